@@ -1,4 +1,4 @@
-// What --explain says of a run.
+// Explanation of a run, for --explain.
 #include "base/memory.hpp"
 #include "stepping/simulation.hpp"
 

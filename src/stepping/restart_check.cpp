@@ -26,7 +26,7 @@ bool may_differ(const std::string& path) {
          path == "Solver" || path == "Output" || path == "Observers" || path == "View";
 }
 
-/// How two entries differ, as the end of a sentence; "" if they do not.
+/// Difference between two entries, as the end of a sentence; "" if there is none.
 std::string difference(const ParameterEntry& before, const ParameterEntry& now) {
   if (before.isList() != now.isList())
     return "is a list in one of the two only";
@@ -45,7 +45,7 @@ std::string first_difference(const ParameterList& before, const ParameterList& n
       continue;
     const ParameterEntry* old = before.getEntryPtr(name);
     if (old == nullptr && entry.isDefault())
-      continue;  // what an earlier version of the program did not know yet
+      continue;  // an earlier version of the program did not know it yet
     std::string found = old == nullptr ? "is new" : "";
     if (old != nullptr && old->isList() && entry.isList()) {
       const std::string below = first_difference(before.sublist(name), now.sublist(name), here);

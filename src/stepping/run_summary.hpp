@@ -10,20 +10,20 @@
 
 namespace lockstep {
 
-/// What summary.json says of a run besides its steps.
+/// Facts of a run in summary.json, besides those of its steps.
 struct RunFacts {
   std::string status;
   long long n_steps = 0, step = 0;  ///< taken by this program, and the number of the last
   double time = 0;                  ///< [s]
   std::size_t n_pressures = 0;
-  double n_cells = 0;          ///< of the boxes in frames
-  double smallest_length = 0;  ///< that the fluid resolves [m]
+  double n_cells = 0;          ///< cells of the boxes in frames; without boxes pressures
+  double smallest_length = 0;  ///< smallest length that the fluid resolves [m]
   GlobalIndex n_solid_unknowns = 0;
-  double wall_seconds = 0, cpu_seconds = 0;  ///< of this rank, once the scene is built
+  double wall_seconds = 0, cpu_seconds = 0;  ///< times of this rank, once the scene is built [s]
 };
 
-/// What summary.json says before the first step already: versions, ranks, machine, command, and the
-/// process of rank 0 with the time of its start. Not collective.
+/// Part of summary.json that is known before the first step: versions, ranks, machine, command, and
+/// the process of rank 0 with the time of its start. Not collective.
 nlohmann::ordered_json run_header(const Communicator& comm, const std::string& command_line);
 
 /// summary.json of a run without an end: "running", or "failed" or "stopped by an exception" with

@@ -169,7 +169,7 @@ std::unique_ptr<SolidSystem<dim>> jointed_solids(
   auto solids = std::make_unique<SolidSystem<dim>>(std::move(models), setting.comm,
                                                    std::move(system->constraints));
   solids->begin_step(start, 0);
-  // Of velocities that the joints do not let, what they leave: as after an impact.
+  // Leaves of the velocities what the joints admit, as after an impact.
   const RCP<const Vector> momentum = solids->explicit_momentum(start, 0);
   solids->set_velocity(*solids->velocity_of(*momentum, 0, solids->constraints(start, start)));
   return solids;

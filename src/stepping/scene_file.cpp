@@ -28,7 +28,7 @@ std::string named_solver_file(const Document& document) {
   return solver.isType<std::string>("File") ? solver.get<std::string>("File") : "";
 }
 
-/// Whether the strategy has a tolerance, which solver files bring along, and the scene's own is not
+/// True if the strategy has a tolerance, which solver files bring along, and the scene's own is not
 /// given.
 bool strategy_sets_tolerance(const Document& document) {
   if (!document.list.isSublist("Solver"))

@@ -23,7 +23,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Of its boxes in frames, cells without fluid included; of a fluid without boxes its pressures.
+/// Number of cells of a fluid's boxes in frames, those without fluid included; without boxes, of
+/// its pressures.
 template <int dim>
 double n_cells(const FluidDiscretization<dim>& fluid) {
   std::vector<BoxFrame> boxes;
@@ -196,7 +197,7 @@ void Simulation<dim>::recorded(const Function& f) {
 
 template <int dim>
 int Simulation<dim>::run() {
-  install_signal_handlers();  // what begins writes already
+  install_signal_handlers();  // begin() writes already
   begin();
   while (step()) {
   }
@@ -358,7 +359,7 @@ void Simulation<dim>::record_ending(const std::string& status,
     write_file_atomically(options_.output_directory + "/summary.json",
                           unfinished_summary(status, message, header_).dump(2) + "\n");
   } catch (const std::exception&) {
-    // What failed is said by its own message; a full disk may hold no other.
+    // The failure has its own message; a full disk may hold no other.
   }
 }
 

@@ -14,7 +14,7 @@
 
 namespace lockstep {
 
-/// Where a run writes and how it starts.
+/// Options of a run: where it writes and how it starts.
 struct RunOptions {
   std::string scene_file;
   std::string output_directory;
@@ -39,12 +39,12 @@ class Simulation {
   Simulation(const Registries<dim>& registries, const ParameterList& scene,
              const RunOptions& options, const Communicator& comm, const Log& log);
 
-  /// What is active, why, and what it costs in memory; for --explain and --validate.
+  /// Tells what is active, why, and what it costs in memory; for --explain and --validate.
   std::string explain();
   /// Runs to the end or to a signal; returns the exit code (0, or 128 + signal). Collective.
   int run();
 
-  // The same in parts, for programs that look at a run, or push it, between its steps. Collective.
+  // Parts of `run`, for programs that look at a run, or push it, between its steps. Collective.
   /// Writes the start, or loads the checkpoint; once, before all steps.
   void begin();
   /// Takes a step and writes what is due. False, and no step, at the end of the scene and after a
@@ -66,7 +66,7 @@ class Simulation {
   /// The row of history.csv of the last step, by column. Local.
   std::vector<std::pair<std::string, HistoryValue>> history_row() const;
   Components<dim>& components() { return components_; }
-  /// What a frame shows at present. Collective.
+  /// Fields that a frame shows at present. Collective.
   Frame frame() const;
 
  private:
@@ -115,15 +115,15 @@ class Simulation {
   bool warned_of_viscous_step_ = false, warned_of_stretch_ = false, warned_of_unsettled_ = false;
   std::vector<char> warned_of_watch_;
   double last_dt_ = 0;
-  double last_frame_ = never_;                ///< that was due [s]
-  double fraction_at_begin_ = 0;              ///< of the run, done before this program
-  const DumpingStrategy* dumping_ = nullptr;  ///< of --dump-system; `components_` owns it
-  std::optional<StepReport<dim>> report_;     ///< of the last step
-  double step_seconds_ = 0;                   ///< it took so long
-  int signal_ = 0;                            ///< that ended the run
+  double last_frame_ = never_;                ///< time of the last frame that was due [s]
+  double fraction_at_begin_ = 0;              ///< part of the run done before this program [1]
+  const DumpingStrategy* dumping_ = nullptr;  ///< strategy of --dump-system; `components_` owns it
+  std::optional<StepReport<dim>> report_;     ///< report of the last step
+  double step_seconds_ = 0;                   ///< wall time of the last step [s]
+  int signal_ = 0;                            ///< signal that ended the run; 0: none
   bool is_within_step_ =
       false;             ///< in memory is no state between steps, because a signal ended one
-  bool failed_ = false;  ///< what is in memory is of no use
+  bool failed_ = false;  ///< the state in memory is of no use
   std::chrono::steady_clock::time_point start_;
   double cpu_seconds_at_start_ = 0;  ///< used by this process before `start_`
   RunSummary summary_;

@@ -1,4 +1,4 @@
-// What a run does before its first step: looks at the checkpoint, then takes its folder over.
+// Start of a run, before its first step: looks at the checkpoint, then takes its folder over.
 #include <cmath>
 
 #include "base/errors.hpp"
@@ -15,7 +15,7 @@ namespace lockstep {
 template <int dim>
 void Simulation<dim>::begin_outputs() {
   files_ = checksums_of_files(scene_, options_.scene_file, comm_);
-  // What does not fit must not leave anything behind, nor take anything away.
+  // A checkpoint that does not fit must not leave anything behind, nor take anything away.
   if (!options_.restart_file.empty()) {
     load_checkpoint();
     tables_.check_columns();

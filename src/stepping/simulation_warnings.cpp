@@ -1,4 +1,4 @@
-// What a run says of its steps that may not be what one wants.
+// Warnings of a run about steps that may not be what one wants.
 #include <cmath>
 
 #include "interfaces/liquid.hpp"

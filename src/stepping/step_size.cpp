@@ -19,7 +19,7 @@ double wanted_step(const TimeOptions& time, double suggested) {
 }
 
 double step_to_end(const TimeOptions& time, double now, double wanted) {
-  constexpr double drift = 1e-6;  // of a step: what times added up 1e5 times and more are off by
+  constexpr double drift = 1e-6;  // error of times added up 1e5 times and more, over a step [1]
   const double left = time.end - now;
   if (left <= wanted * (1 + drift))
     return left;

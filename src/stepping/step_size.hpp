@@ -2,7 +2,7 @@
 
 namespace lockstep {
 
-/// What the list "Time" says.
+/// Settings of the list "Time".
 struct TimeOptions {
   double start = 0, end = 1;         ///< [s]
   double fixed_step = 0;             ///< [s]; 0: from the CFL number

@@ -18,7 +18,7 @@ bool has_entries(const ParameterList& scene, const std::string& list) {
   return scene.isSublist(list) && scene.sublist(list).numParams() > 0;
 }
 
-/// Of those that not every run has.
+/// Names of the tables of a scene that not every run has.
 std::set<std::string> tables_of(const ParameterList& scene) {
   std::set<std::string> names;
   if (has_entries(scene, "Joints"))
@@ -38,7 +38,7 @@ std::set<std::string> recorded_tables(const std::string& directory) {
                      read_xml(file, Communicator(Teuchos::rcp(new Teuchos::SerialComm<int>))).list)
                : std::set<std::string>();
   } catch (const Failure&) {
-    return {};  // of somebody else
+    return {};  // the file is somebody else's
   }
 }
 

@@ -31,8 +31,8 @@ std::vector<HistoryColumn> table_columns(const std::vector<ObservedColumn>& obse
   return columns;
 }
 
-/// Of a checkpoint what belongs to one observer: two of one type would take the same names, and
-/// one of another type is another one.
+/// Key of one observer in a checkpoint: two of one type would take the same names, and one of
+/// another type is another one.
 std::string key_of(const std::string& name, const std::string& type) {
   return type + " " + name;
 }

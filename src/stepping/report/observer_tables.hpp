@@ -41,7 +41,7 @@ class ObserverTables {
   struct Watch {
     std::string name, type;
     Schedule times;
-    double last_time = never;  ///< of its last look that was due [s]
+    double last_time = never;  ///< time of its last look that was due [s]
     std::unique_ptr<Observer<dim>> observer{};
     std::unique_ptr<HistoryTable> table{};
   };

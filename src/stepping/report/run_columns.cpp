@@ -138,7 +138,7 @@ void add_audit(Columns<HistoryRow<dim>>& columns) {
         [](const Row& row) { return row.wall_seconds; }}});
 }
 
-/// Of what a fluid has said it would report.
+/// Throws unless a fluid reports all that it has said it would.
 void check_told(bool is_told) {
   check_output(is_told,
                "The fluid does not report all that it said it would of its liquid, and history.csv "

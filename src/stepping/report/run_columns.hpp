@@ -15,7 +15,7 @@ struct SolidState;
 template <int dim>
 struct StepReport;
 
-/// What a row of history.csv is made from: a step.
+/// Source of a row of history.csv: a step.
 template <int dim>
 struct HistoryRow {
   long long step;
@@ -23,7 +23,7 @@ struct HistoryRow {
   double wall_seconds;
 };
 
-/// Of bodies.csv: a step and a solid.
+/// Source of a row of bodies.csv: a step and a solid.
 template <int dim>
 struct BodyRow {
   long long step;
@@ -32,7 +32,7 @@ struct BodyRow {
   const Momentum<dim>& impulse;  ///< hydrodynamic, over dt, angular about the origin
 };
 
-/// Of joints.csv: a step and a coordinate.
+/// Source of a row of joints.csv: a step and a coordinate.
 template <int dim>
 struct JointRow {
   long long step;
@@ -41,7 +41,7 @@ struct JointRow {
   bool limited;  ///< its torque was the largest
 };
 
-/// What a liquid with a free surface reports, see LiquidReport.
+/// Parts of the LiquidReport of a liquid with a free surface that have columns.
 struct LiquidColumns {
   std::vector<std::string> watches;  ///< names
   bool gas = false, drops = false;

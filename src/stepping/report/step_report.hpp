@@ -10,11 +10,11 @@
 
 namespace lockstep {
 
-/// What happened in one step.
+/// Report of one step.
 template <int dim>
 struct StepReport {
   double time = 0, dt = 0;  ///< time at the end [s]
-  double cfl = 0;           ///< of u^n over dt
+  double cfl = 0;           ///< CFL number of u^n over dt [1]
   SolveReport s1, f2, s2;
   int viscous_iterations = 0;
   double viscous_dissipation = 0;  ///< see ViscousResult [W]
@@ -25,8 +25,8 @@ struct StepReport {
   MomentumLedger<dim> ledger;
   double momentum_error = 0, angular_momentum_error = 0;
   Momentum<dim> fluid_momentum, solid_momentum, boundary_impulse;
-  /// What advection, uncovered, occlusion resets and the change of lumped masses did to the
-  /// momentum.
+  /// Change of the momentum by advection, uncovered, occlusion resets and the change of lumped
+  /// masses.
   Momentum<dim> transport_change;
   /// Numerical torques over dt, see AuditedCoupling::lumping_torque_error and
   /// SolidSystem::implicit_impulse.
@@ -38,10 +38,10 @@ struct StepReport {
   std::optional<LiquidReport> liquid;  ///< if it has a free surface
   bool is_settled = true;  ///< implicit forces of solids are those of where they move to
   GlobalIndex n_clamped_elements = 0;               ///< see SolidOutput
-  double stretch_beyond_limit = 0;                  ///< the same
+  double stretch_beyond_limit = 0;                  ///< see SolidOutput [1]
   std::vector<Momentum<dim>> hydrodynamic_impulse;  ///< per solid over dt, angular about the origin
   ContactReport<dim> contact_position, contact_velocity;
-  RCP<const Vector> reactions;  ///< of constraints in S2, generalized; null: nothing moves freely
+  RCP<const Vector> reactions;  ///< impulses of constraints in S2, generalized; null: no unknowns
 };
 
 }  // namespace lockstep

@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// What making the advection velocity took.
+/// Report on making the advection velocity.
 struct AdvectionReport {
   SolveReport solve;           ///< empty where u^n is it
   double incompatibility = 0;  ///< see CoupledSolution

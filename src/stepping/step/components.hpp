@@ -38,7 +38,7 @@ void for_each_plug_in(Components<dim>& components, const Function& f) {
 /// The sides that a step makes use of; null where a plug-in does without.
 template <int dim>
 struct ComponentSides {
-  explicit ComponentSides(Components<dim>& components)
+  explicit ComponentSides(const Components<dim>& components)
       : viscous_fluid(components.fluid->viscosity()),
         audited_fluid(components.fluid->audit()),
         viscous_coupling(side_of<ViscousCoupling<dim>>(*components.coupling)),

@@ -12,9 +12,9 @@ struct CoupledSolution {
   BlockVector rhs;
   std::vector<double> coupled_before;  ///< u*_F
   RCP<Vector> momentum;                ///< M_S V_S* as it entered row 2
-  RCP<Vector> gas_momentum;            ///< what bubbles of gas gave besides; null: there are none
+  RCP<Vector> gas_momentum;            ///< impulse of gas bubbles besides; null: there are none
   std::vector<double> gas_pressure;    ///< p̂ of the bubbles; empty: there are none
-  SolveReport report;                  ///< of all the solves that led here
+  SolveReport report;                  ///< report of all the solves that led here
   double incompatibility = 0;          ///< part of the right-hand side that was removed [1]
   bool is_converged = true;  ///< implicit forces of solids are those at the velocity that was found
 };
@@ -23,9 +23,9 @@ struct CoupledSolution {
 template <int dim>
 RCP<Vector> last_pressure(const FluidDiscretization<dim>& fluid, const StepTime& step, double dt);
 
-/// What a solve over dt has to reach. Residuals below the round-off of the fluxes, with the speed
-/// that gravity may add, are nothing: in each cell a few bits of what passes a face, in the norm
-/// over all cells root of their number as much. Collective.
+/// Accuracy that a solve over dt has to reach. Residuals below the round-off of the fluxes, with
+/// the speed that gravity may add, are nothing: in each cell a few bits of what passes a face, in
+/// the norm over all cells root of their number as much. Collective.
 template <int dim>
 SolveRequest solve_request(const FluidDiscretization<dim>& fluid, const std::string& name,
                            double tolerance, const StepTime& step, double dt);

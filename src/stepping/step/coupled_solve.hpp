@@ -8,7 +8,7 @@
 namespace lockstep {
 
 struct CoupledSolveOptions {
-  double tolerance = 1e-8;    ///< of the residual of each block, relative
+  double tolerance = 1e-8;    ///< largest residual of each block, relative [1]
   int newton_iterations = 1;  ///< solves with implicit forces linearised anew
 };
 

@@ -10,8 +10,8 @@
 namespace lockstep {
 
 namespace {
-/// Of the change of the model, that the potential may exceed it by: in a step that ends the search,
-/// and in one that goes on.
+/// Largest excess of the potential over the model, relative to the change of the model [1]: in a
+/// step that ends the search, and in one that goes on.
 constexpr double good = 0.1, tolerable = 0.5;
 constexpr int most_iterations = 40, most_halvings = 40;
 
@@ -62,11 +62,11 @@ class Descent {
     velocity->update(part, change_, 1);
     return velocity;
   }
-  /// What the potential of a solid exceeds the model by, over the change of the model: of the worst
-  /// one.
+  /// Excess of the potential over the model, relative to the change of the model [1]: that of the
+  /// worst solid.
   double excess(double part) const {
     const std::vector<ComputedEnergy> end = solids_.nonlinear_energies(dt_, *at(part));
-    constexpr double unseen = 1e-12;  // of what a free_motion brings, round-off is strain
+    constexpr double unseen = 1e-12;  // strain by round-off in free rigid motion, relative [1]
     const auto change = [part](double slope, double curvature) {
       return std::abs(part * slope + 0.5 * part * part * curvature);
     };
@@ -87,7 +87,7 @@ class Descent {
   double dt_;
   const Vector& from_;
   Vector change_;
-  std::vector<double> slopes_, curvatures_;  ///< of what strains
+  std::vector<double> slopes_, curvatures_;  ///< model's derivatives without translations [J]
   std::vector<double> whole_slopes_, whole_curvatures_;
   std::vector<ComputedEnergy> start_;
 };
@@ -181,7 +181,7 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
 template <int dim>
 void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before,
                  Vector& velocity) {
-  constexpr double largest = 0.01;  // of the energy that the motion has in the model
+  constexpr double largest = 0.01;  // rise over the energy of the motion in the model [1]
   const RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
   Vector change(velocity, Teuchos::Copy), product(solids.map());
   change.update(-1, before, 1);

@@ -10,7 +10,7 @@ namespace lockstep {
 template <int dim>
 struct SettledMotion {
   RCP<Vector> velocity;        ///< with contact
-  ContactReport<dim> contact;  ///< of the last linearisation; without contact empty
+  ContactReport<dim> contact;  ///< contact of the last linearisation; empty without it
   bool is_settled =
       true;  ///< false: the forces are not yet those of this velocity, nor the contact
 };
@@ -24,7 +24,7 @@ RCP<const LinearOperator> implicit_response(const SolidSystem<dim>& solids, doub
 template <int dim>
 ContactResponse joint_response(const SolidSystem<dim>& solids, double dt);
 
-/// What a solve over dt is to find for the solids alone: with the impulses of the fluid as they
+/// Finds the motion of the solids alone in a solve over dt: with the impulses of the fluid as they
 /// are, the velocity that minimises
 ///
 ///   Phi(V) = 1/2 V.M_S V - Q.V + potential of the inner forces at the positions that V leads to.
@@ -46,13 +46,13 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
                                  const Vector& predicted, const Vector& first, Vector& momentum,
                                  const RCP<const LinearOperator>& known_response = {});
 
-/// What `sweep_volumes` has made of velocities is taken back to where it costs the solids little
-/// energy, stiff ones would be strained by it; and left to `settle_motion` where that acts.
+/// Reduces the changes of velocities by `sweep_volumes` to where they cost each solid little
+/// energy, since they would strain stiff ones; undoes them where `settle_motion` has to act.
 /// Collective.
 template <int dim>
 void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before, Vector& velocity);
 
-/// Whether the model is good at the velocity that a solve has found. Collective.
+/// True if the model is good at the velocity that a solve has found. Collective.
 template <int dim>
 bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocity);
 

@@ -5,14 +5,14 @@
 
 namespace lockstep {
 
-/// How the solids get to their next positions.
+/// Motion of the solids to their next positions.
 template <int dim>
 struct SolidPath {
   RCP<const Vector>
-      velocity;         ///< of all dofs: positions move by its product with the step's length
+      velocity;         ///< V of all dofs: positions move by its product with the step's length
   StartImpulse joints;  ///< for the velocities at the end of the step
   ContactReport<dim> contact;
-  SolveReport report;               ///< of the coupled solves
+  SolveReport report;               ///< report of the coupled solves
   double incompatibility = 0;       ///< see CoupledSolution
   bool is_converged = true;         ///< see CoupledSolution
   double stretch_beyond_limit = 0;  ///< see SolidOutput
@@ -35,10 +35,10 @@ class PositionUpdate {
   /// A path with what closing its joints asks of it.
   struct Found {
     SolidPath<dim> path;
-    RCP<Vector> velocity;       ///< that of the path
+    RCP<Vector> velocity;       ///< velocity of the path
     RCP<const Vector> solved;   ///< before contact; null without joints
-    RCP<Vector> joint_impulse;  ///< of the solve; null without joints
-    SweptRates swept;           ///< of the solve
+    RCP<Vector> joint_impulse;  ///< impulse of joints in the solve; null without joints
+    SweptRates swept;           ///< rates of the solve [m^dim/s]
     CoupledSolution solution;   ///< empty without unknowns
   };
   Found find_once(const StepContext<dim>& context, const RCP<const Vector>& drag,

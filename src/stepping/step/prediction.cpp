@@ -129,9 +129,9 @@ Friction<dim> Prediction<dim>::solve(const StepContext<dim>& context, const Expe
   return friction;
 }
 
-/// What the projection of a velocity that feels pressure and viscosity leaves out of the pressure,
-/// -mu div u' (Timmermans, Minev and van de Vosse 1996). The projection alone finds a pressure that
-/// answers to inertia; where nu dt > h^2 viscosity answers first, and without this part the
+/// Part of the pressure that the projection of a velocity that feels pressure and viscosity leaves
+/// out, -mu div u' (Timmermans, Minev and van de Vosse 1996). The projection alone finds a pressure
+/// that answers to inertia; where nu dt > h^2 viscosity answers first, and without this part the
 /// pressure would need nu dt / h^2 steps to follow. Where a cell is cut it is less than it might
 /// be.
 template <int dim>

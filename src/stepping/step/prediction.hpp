@@ -9,24 +9,24 @@ namespace lockstep {
 struct PredictionOptions {
   ViscousOptions viscous;
   bool incremental_pressure = true;  ///< the viscous solve reads the last step's pressure
-  bool rotational_pressure = true;   ///< and corrects it by the divergence that it leaves
+  bool rotational_pressure = true;   ///< the divergence that it leaves corrects this pressure
 };
 
 /// The impulses of explicit forces on the fluid. Zero where positions are moved.
 template <int dim>
 struct FluidForces {
   Momentum<dim> body;
-  std::optional<Momentum<dim>> tension;  ///< of a free surface, its explicit part
+  std::optional<Momentum<dim>> tension;  ///< explicit part of surface tension
 };
 
-/// What viscosity does beside changing u*.
+/// Effects of viscosity beside the change of u*.
 template <int dim>
 struct Friction {
   ViscousResult<dim> viscous;  ///< empty without viscosity
   RCP<Vector> pressure;        ///< -mu div u' over dt, part of the next step's p̂; null: none
-  SolveReport pressure_work;   ///< of a pressure that was solved for just for it
+  SolveReport pressure_work;   ///< solve for a pressure that only viscosity needs
   double viscous_number = 0;   ///< nu dt / h^2
-  Momentum<dim> tension;       ///< of a free surface, its implicit part; as in FluidForces
+  Momentum<dim> tension;       ///< implicit part of surface tension; as in FluidForces
 };
 
 /// Makes u* of a velocity: explicit forces, then viscosity with the solids (Eqs. 20 and 21).
@@ -52,7 +52,7 @@ class Prediction {
   struct Expected {
     RCP<const Vector> of_fluid;  ///< p̂; null: none is
     std::vector<double> of_gas;  ///< p̂ of bubbles
-    SolveReport work;            ///< of finding it
+    SolveReport work;            ///< solve that finds it
   };
   Expected expected_pressure(const StepContext<dim>& context);
   Friction<dim> solve(const StepContext<dim>& context, const Expected& expected);

@@ -12,14 +12,14 @@ template <int dim>
 struct SolidMomentum {
   RCP<Vector> momentum;    ///< M_S V_S* without contact and viscous drag
   Momentum<dim> forces;    ///< given by weight, loads and control
-  Momentum<dim> buoyancy;  ///< that the grid does not see
+  Momentum<dim> buoyancy;  ///< impulse of buoyancy that the grid does not see
   Momentum<dim> joints;    ///< at the begin of the step
-  Momentum<dim> drops;     ///< that hit dynamic solids
+  Momentum<dim> drops;     ///< impulse of drops that hit dynamic solids
   /// Buoyancy that the grid does not see and drops, on every solid, prescribed ones included.
   std::vector<Momentum<dim>> on_each;
 };
 
-/// What acts on the solids explicitly: their own forces, joints at the begin of the step, buoyancy
+/// Explicit forces on the solids: their own, those of joints at the begin of the step, buoyancy
 /// that the grid does not see, drops that hit them.
 template <int dim>
 class SolidForces {

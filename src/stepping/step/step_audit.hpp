@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// What the stages of a step returned; empty where a scene or a scheme does without one.
+/// Results of the stages of a step; empty where a scene or a scheme does without one.
 template <int dim>
 struct StageResults {
   Friction<dim> start;  ///< before positions are found
@@ -58,7 +58,7 @@ class StepAudit {
   Components<dim>& components_;
   ComponentSides<dim> sides_;
   CoupledSystem<dim>& system_;
-  double cfl_ = 0;                         ///< of the present step
+  double cfl_ = 0;                         ///< CFL number of the present step [1]
   Momentum<dim> before_;                   ///< before forces act in the present step
   Momentum<dim> last_momentum_;            ///< at the end of the last step
   std::optional<StepEnergy<dim>> energy_;  ///< none: nobody wants it

@@ -19,10 +19,10 @@ struct StepTime {
 /// solve for the velocities finds the rest. Generalized.
 struct StartImpulse {
   RCP<const Vector> given;  ///< null: all of what they give acts at the end of the step
-  RCP<const Vector> held;   ///< of it, what holds given dofs
+  RCP<const Vector> held;   ///< part of the impulses that holds given dofs
 };
 
-/// What the stages that lead to one coupled solve share: the step, the time over which they act,
+/// Context of the stages that lead to one coupled solve: the step, the time over which they act,
 /// and the velocities at which dofs are held meanwhile.
 template <int dim>
 struct StepContext {

@@ -9,7 +9,7 @@ namespace lockstep {
 
 namespace {
 
-/// Of models that are no WorkingSolids all forces are loads.
+/// Work of one model's forces [J]; all are loads if it is no WorkingSolids.
 template <int dim>
 SolidWork work_of_model(const SolidModel<dim>& model, const StepContext<dim>& context,
                         const Vector& velocity, const Vector& mean) {
@@ -52,7 +52,7 @@ StepEnergy<dim>::StepEnergy(Components<dim>& components, const CoupledSystem<dim
       fluid_(components.fluid->energy()),
       audited_(components.fluid->audit()) {}
 
-/// Of u*, what is lumped on solids included.
+/// Kinetic energy of u* [J], that of fluid lumped on solids included.
 template <int dim>
 double StepEnergy<dim>::fluid_energy() const {
   return (audited_ ? audited_->kinetic_energy() : 0) +

@@ -16,11 +16,11 @@ class StepEnergy {
  public:
   StepEnergy(Components<dim>& components, const CoupledSystem<dim>& system);
 
-  /// Of the step: fluid and solids are at its begin.
+  /// Begins the budget of the step: fluid and solids are at its begin.
   void begin();
   /// u* and the geometry are those on which the forces of F3 act.
   void end_transport();
-  void end_forces();    ///< of F3, but for viscosity
+  void end_forces();    ///< forces of F3, but for viscosity
   void end_friction();  ///< viscosity
   /// u* is that of the end, solids do not know their velocities yet. `reactions`: of constraints;
   /// null: of none. `friction`: of the fluid on the solids; null: none.
@@ -40,7 +40,7 @@ class StepEnergy {
   const CoupledSystem<dim>& system_;
   EnergyFluid<dim>* fluid_;             ///< null: it cannot tell
   const AuditedFluid<dim>* audited_;    ///< likewise
-  EnergyBudget book_;                   ///< of this step, as far as it is known
+  EnergyBudget book_;                   ///< budget of this step, as far as it is known [J]
   RCP<const Vector> velocity_;          ///< V^n
   std::vector<double> coupled_before_;  ///< u*_F before forces
   double fluid_energy_ = 0, elastic_energy_ = 0, kinetic_energy_ = 0;  ///< at the begin
