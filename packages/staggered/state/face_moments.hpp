@@ -14,7 +14,7 @@ class FaceMoments {
   FaceMoments(const TiledGrid<dim>& grid, int axis) : grid_(grid), axis_(axis) {}
 
   /// The impulses of a whole row, from this face on.
-  void add_row(int first, const RowValues<dim>& impulses) {
+  void add_row(int first, const StripValues<dim>& impulses) {
     if (TiledGrid<dim>::tile_of(first) != tile_of_rows_)
       next_tile_of_rows(TiledGrid<dim>::tile_of(first));
     rows_[0] += impulses;
@@ -34,7 +34,7 @@ class FaceMoments {
   }
 
  private:
-  using Row = RowValues<dim>;
+  using Row = StripValues<dim>;
   static int place_in_tile(int cell, int axis) {
     return (cell >> (axis * log_tile_width<dim>)) & (tile_width<dim> - 1);
   }

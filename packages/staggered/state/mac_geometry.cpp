@@ -17,7 +17,7 @@ PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
     side.solid = geometry.state.surface->inside(center);
   } else if (geometry.state.cells[cell] == CellState::air) {
     side.kind = SideKind::air;
-    side.pocket = geometry.pocket.empty() ? -1 : geometry.pocket[cell];
+    side.bubble = geometry.bubble.empty() ? -1 : geometry.bubble[cell];
   }
   return side;
 }

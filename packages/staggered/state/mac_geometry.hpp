@@ -23,12 +23,12 @@ struct MacGeometry : FluidGeometry<dim> {
   /// Cells so near to a surface that a link from their faces may meet it; empty without surface.
   std::vector<char> near;
   /// Owned tiles all of whose cells are fluid, with no surface near: their inner faces are free.
-  std::vector<char> plain;
+  std::vector<char> regular_tiles;
   /// Owned faces with open fraction < 1 and fluid on at least one side.
   std::vector<FaceId> coupled;
   std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows beside fluid
   std::vector<FaceId> band_edge;   ///< owned free faces to fluid at rest beyond the stored tiles
-  std::vector<int> pocket;         ///< gas bubble of stored cells, or -1; empty: gas is not trapped
+  std::vector<int> bubble;         ///< gas bubble of stored cells, or -1; empty: gas is not trapped
 
   /// The part of a face through which free fluid flows.
   double open_fraction(int axis, int cell) const {
@@ -50,15 +50,15 @@ struct MacGeometry : FluidGeometry<dim> {
            is_row_of<dim>(FaceState::free, state.faces[axis].data() + first);
   }
   /// True if all faces of a strip of cells are free and regular, and the cells fluid.
-  bool has_regular_faces(const CellRow<dim>& row) const;
-  bool in_pocket(int cell) const { return !pocket.empty() && pocket[cell] >= 0; }
+  bool has_regular_faces(const CellStrip<dim>& row) const;
+  bool in_bubble(int cell) const { return !bubble.empty() && bubble[cell] >= 0; }
   /// True if the tile of an owned cell is regular.
-  bool is_plain(int cell) const { return plain[TiledGrid<dim>::tile_of(cell)] != 0; }
+  bool is_regular(int cell) const { return regular_tiles[TiledGrid<dim>::tile_of(cell)] != 0; }
   bool near_surface(int cell) const { return !near.empty() && near[cell] != 0; }
 };
 
 template <int dim>
-bool MacGeometry<dim>::has_regular_faces(const CellRow<dim>& row) const {
+bool MacGeometry<dim>::has_regular_faces(const CellStrip<dim>& row) const {
   if (row.n != tile_width<dim> || !is_row_of<dim>(CellState::fluid, state.cells.data() + row.begin))
     return false;
   const int after = row.neighbors[1];

@@ -33,8 +33,8 @@ int cell_above(double coordinate, double lower, double spacing) {
 }
 
 template <int dim>
-void mark_blocked(const MacDomain<dim>& domain, int axis,
-                  const typename LatticeCrossings<dim>::Line& line, std::vector<char>& blocked) {
+void mark_occluded(const MacDomain<dim>& domain, int axis,
+                   const typename LatticeCrossings<dim>::Line& line, std::vector<char>& occluded) {
   const TiledGrid<dim>& grid = domain.grid;
   const double lower = grid.lower()[axis], h = grid.spacing();
   const int n = grid.n_cells()[axis];
@@ -52,7 +52,7 @@ void mark_blocked(const MacDomain<dim>& domain, int axis,
       continue;
     const int cell = grid.cell(coordinates);
     if (cell >= 0)
-      blocked[cell] = static_cast<char>(blocked[cell] | (1 << axis));
+      occluded[cell] = static_cast<char>(occluded[cell] | (1 << axis));
   }
 }
 
@@ -153,7 +153,7 @@ SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapsh
                                std::vector<CellState>& cells) {
   const TiledGrid<dim>& grid = domain.grid;
   SurfaceMarks<dim> marks;
-  marks.blocked.assign(grid.n_stored_cells(), 0);
+  marks.occluded.assign(grid.n_stored_cells(), 0);
   marks.near.assign(grid.n_stored_cells(), 0);
   if (grid.n_tiles() == 0)
     return marks;
@@ -164,7 +164,7 @@ SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapsh
     fill_solid(grid, surface, line, begin[0], end[0], cells);
   for (int axis = 0; axis < dim; ++axis)
     for (const auto& line : crossings.lines[axis])
-      mark_blocked(domain, axis, line, marks.blocked);
+      mark_occluded(domain, axis, line, marks.occluded);
   Cells<dim> marked;
   for (int s = 0; s < surface.n_simplices(); ++s)
     mark_near<dim>(grid, surface, s, begin, end, marked, marks.near);

@@ -8,11 +8,11 @@ template <int dim>
 struct SurfaceMarks {
   /// Bit a: the segment between the two pressure points of the lower face normal to axis a meets
   /// the surface.
-  std::vector<char> blocked;
+  std::vector<char> occluded;
   std::vector<char> near;  ///< the surface comes within h/2 of the cell (maximum norm)
 };
 
-/// Sets cells whose centre is inside a closed solid to `CellState::solid` and marks blocked faces,
+/// Sets cells whose centre is inside a closed solid to `CellState::solid` and marks occluded faces,
 /// all from the crossings of the cell-centre lines, so that both agree. Not collective.
 template <int dim>
 SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface,

@@ -37,7 +37,7 @@ ClosedFreeMotion closed_flight(ConstraintModel& joints, const StepTime& step,
   if (auto* const free_motions = side_of<FreeRigidMotion>(joints))
     return free_motions->close_free_motion(step.begin, step.dt, correction, solved, velocity);
   ClosedFreeMotion motion;
-  motion.drift = joints.close(step.begin, step.dt, velocity).drift;
+  motion.constraint_error = joints.close(step.begin, step.dt, velocity).constraint_error;
   return motion;
 }
 
@@ -144,9 +144,10 @@ SolidPath<dim> PositionUpdate<dim>::find_with_joints(StepContext<dim> context,
   const RCP<const Vector> correction = solid_forces_.midpoint_correction(context.dt);
   Found found = find_once(context, drag, correction, nullptr);
   ClosedFreeMotion motion = close(*correction, found);
-  if (!motion.drift.is_null()) {
+  if (!motion.constraint_error.is_null()) {
     const Found first = found;
-    context.constraints = solids.constraints(context.step.begin, context.step.end(), motion.drift);
+    context.constraints =
+        solids.constraints(context.step.begin, context.step.end(), motion.constraint_error);
     RCP<const Vector> next = correction;
     if (!motion.correction.is_null())
       next = motion.correction;
@@ -155,7 +156,7 @@ SolidPath<dim> PositionUpdate<dim>::find_with_joints(StepContext<dim> context,
     found.path.is_converged = found.path.is_converged && first.path.is_converged;
     motion = close(*next, found);
   }
-  if (motion.drift.is_null())
+  if (motion.constraint_error.is_null())
     return found.path;
   const RCP<Vector> impulse = found.joint_impulse;
   if (!motion.at_end.is_null())
