@@ -42,6 +42,7 @@ OTHER_PROGRAM = "it compares with another program: choose one, and name it with 
 TOOL_PAGES = {
     "histories": Tool(["tools/compare-histories --against OTHER/simulate"], ["xml-params/scenes/*.xml"], by_hand=OTHER_PROGRAM),
     "histories-ranks": Tool(["tools/compare-histories --ranks 2"], ["xml-params/scenes/*.xml"]),
+    "house": Tool(["tools/measure-house"], [], ["src", "packages", "tools/measure-house"]),
     "interfaces": Tool(["tools/measure-interfaces"], [], [
         "tests/benchmarks/interfaces.cpp", "packages/liquid", "packages/staggered", "packages/transport", "packages/grid", "src/base", "src/geometry"]),
     "joints": Tool(["tools/measure-joints"], [f"{STUDIES}/pendulum-scene.xml", "xml-params/scenes/fish-2d.xml"], ["tests/joints"]),
