@@ -1,7 +1,6 @@
 // Active set of contacts and joint limits, found round by round.
 #include <algorithm>
 
-#include "base/interruption.hpp"
 #include "base/round_off.hpp"
 #include "contact/contact_problem.hpp"
 

@@ -47,13 +47,13 @@ TEST(WetVolume, OnItsOwnSideOfAHull) {
   deep.height = 10;
   using Kind = SideKind;
   const auto bottom = plate(1, 0.2);
-  EXPECT_NEAR(wet_volume<2>(dual_cell(1, Kind::unknown, Kind::empty), bottom, false, deep), 0.7,
+  EXPECT_NEAR(wet_volume<2>(dual_cell(1, Kind::unknown, Kind::air), bottom, false, deep), 0.7,
               1e-12);
-  EXPECT_NEAR(wet_volume<2>(dual_cell(1, Kind::empty, Kind::unknown), bottom, false, deep), 0.3,
+  EXPECT_NEAR(wet_volume<2>(dual_cell(1, Kind::air, Kind::unknown), bottom, false, deep), 0.3,
               1e-12);
   EXPECT_NEAR(wet_volume<2>(dual_cell(1, Kind::unknown, Kind::unknown), bottom, false, deep), 1,
               1e-12);
-  EXPECT_NEAR(wet_volume<2>(dual_cell(0, Kind::unknown, Kind::empty), plate(0, -0.1), false, deep),
+  EXPECT_NEAR(wet_volume<2>(dual_cell(0, Kind::unknown, Kind::air), plate(0, -0.1), false, deep),
               0.4, 1e-12);
 }
 
@@ -61,7 +61,7 @@ TEST(WetVolume, OfAHullAtTheWaterline) {
   Level level;
   level.height = 0.25;  // three quarters of the cell are below
   using Kind = SideKind;
-  EXPECT_NEAR(wet_volume<2>(dual_cell(0, Kind::unknown, Kind::empty), plate(0, 0.2), false, level),
+  EXPECT_NEAR(wet_volume<2>(dual_cell(0, Kind::unknown, Kind::air), plate(0, 0.2), false, level),
               0.75 * 0.7, 1e-12);
 }
 
