@@ -108,7 +108,7 @@ void declare_trapped_air(ParameterList& list) {
                  "Content of closed air bubbles above the liquid: \"void\", p = 0, as in the "
                  "atmosphere; \"ideal gas\", whose pressure follows from its volume; \"constant "
                  "volume\", a gas that cannot be compressed. Of more than 8 bubbles the largest "
-                 "have gas. Bubbles of at most \"Smallest Void\" cells are filled all the same.");
+                 "have gas. Bubbles of at most \"Smallest Cavity\" cells are filled all the same.");
   declare_optional<ParameterArray<double>>(
       list, "Atmosphere",
       "Points, a component an axis, one after the other [m]: air that can be reached from them or "

@@ -61,6 +61,7 @@ const std::vector<FormerName>& former_names() {
       {"Fluid", "Particles per Cell", "is always 16 now: leave it out"},
       {"Fluid", "Reseed Interval", "is always 20 steps now: leave it out"},
       {"Fluid", "Largest Shift", "is a constant now: leave it out"},
+      {"Fluid", "Smallest Void", "is called \"Smallest Cavity\" now"},
       {"Fluid", "Crumbs",
        "is called \"Volume Correction\" now: \"component\" in place of \"return\", \"none\" in "
        "place of \"keep\""},

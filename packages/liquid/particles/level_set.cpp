@@ -28,7 +28,7 @@ constexpr double negligible_motion = 0.05;
 template <int dim>
 ParameterList level_set_parameters() {
   ParameterList list;
-  declare_at_least(list, "Smallest Air", dim == 2 ? 8 : 27, 0,
+  declare_at_least(list, "Smallest Cavity", dim == 2 ? 8 : 27, 0,
                    "Largest air bubble, in cells, that is filled if liquid touches it: it would "
                    "drain the liquid around it. 0: none is.");
   declare_volume_correction(list);
@@ -44,7 +44,7 @@ ParameterList particle_level_set_parameters() {
 
 LevelSetParameters read_level_set_parameters(const ParameterList& list) {
   LevelSetParameters parameters;
-  parameters.smallest_cavity = list.get<int>("Smallest Air");
+  parameters.smallest_cavity = list.get<int>("Smallest Cavity");
   parameters.volume = read_volume_correction(list);
   if (list.isParameter("Drops"))
     parameters.particles = read_particles(list);

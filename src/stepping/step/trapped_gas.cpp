@@ -14,7 +14,7 @@ TrappedGas<dim>::TrappedGas(const Components<dim>& components)
       coupling_(side_of<GasCoupling<dim>>(*components.coupling)) {
   check_input(!fluid_ || coupling_,
               "The coupling \"{}\" knows no gas that pushes on solids; take another one, or leave "
-              "\"Trapped Air\" at \"void\".",
+              "\"Trapped Air\" at \"massless\".",
               components.coupling->name());
 }
 
