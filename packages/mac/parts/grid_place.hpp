@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// Where a point is: its cell, and in cells from the lower corner.
+/// Place of a point on the grid: its cell, and its distance from the lower corner [cells].
 template <int dim>
 struct GridPlace {
   int cell = -1;

@@ -135,7 +135,7 @@ Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeome
   const GlobalIndex first_unknown =
       values.size() > 0 ? geometry.pressure_map->getMinGlobalIndex() : 0;
   Momentum<dim> impulse = whole_side_impulse(domain, geometry, values.getRawPtr(), first_unknown);
-  // Where solids cover a side, its pressure acts on them; only the rest is the side's.
+  // The pressure of a side's part that solids cover acts on these; only the rest is the side's.
   for (std::size_t i = geometry.coupled.size(); i < geometry.coupled_volumes.size(); ++i) {
     const ControlVolume<dim>& volume = geometry.coupled_volumes[i];
     if (!volume.at_prescribed_side)

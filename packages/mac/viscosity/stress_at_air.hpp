@@ -13,7 +13,7 @@ namespace lockstep {
 /// other, each of which shares a cell and an edge; in 3D but for mu (div u)^2, without which the
 /// form would not be positive.
 ///
-/// Where solids are near, the form is that of the couplings alone. The terms that cancel in the
+/// The form is that of the couplings alone where solids are near. The terms that cancel in the
 /// middle leave one of either sign where that ends: they may be used only where `is_definite` says
 /// so.
 template <int dim>
