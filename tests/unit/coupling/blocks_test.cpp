@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <functional>
 
 #include "support/coupled_case.hpp"
 #include "support/dense.hpp"
@@ -120,6 +121,27 @@ TEST(Eq16, AddedMassByHand) {
                Eigen::MatrixXd::Identity(n_padding, n_padding))
                   .norm(),
               near);
+  }
+}
+
+/// C = M~ - dt D is kept while neither dt nor D changes, and made anew after all that changes D.
+TEST(Eq16, SolidBlockFollowsTheLinearisation) {
+  FakeSolidOptions<2> damped;
+  damped.damping = 5;
+  CoupledCase<2> c(two_plate_box(true), plates({}, damped));
+  const auto version = [&c](double dt) { return c.system.blocks(dt).solids.version; };
+  const long first = version(0.5);
+  EXPECT_EQ(version(0.5), first);
+  EXPECT_NE(version(0.25), first);
+  for (const auto& change :
+       std::vector<std::function<void()>>{[&c] { c.solids.linearise(0.5, *c.solids.velocity()); },
+                                          [&c] { c.solids.set_velocity(*c.solids.velocity()); },
+                                          [&c] { c.solids.move(*c.solids.velocity(), 0, 0.5); },
+                                          [&c] { c.solids.begin_step(0, 0.5); }}) {
+    const long before = version(0.5);
+    EXPECT_EQ(version(0.5), before);
+    change();
+    EXPECT_NE(version(0.5), before);
   }
 }
 
