@@ -44,23 +44,21 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
                    std::max(0.0, wet_volume<dim>(volume, surface, true, *liquid));
   }
   find_prescribed_velocity(solids);
-  weigh_excess(fluid, solids);
+  if (options_.correct_buoyancy)
+    this->find_hydrostatic_loads(fluid, solids, [this](auto& loads) { add_rest(loads); });
   if (solids.has_unknowns())
     assemble_blocks(solids);
 }
 
 template <int dim>
-void FluxCoupling<dim>::weigh_excess(const FluidDiscretization<dim>& fluid,
-                                     const SolidSystem<dim>& solids) {
-  if (!options_.correct_buoyancy || surface_->empty() || fluid.gravity().isZero(0))
-    return;
-  const double density = this->density_around(fluid, solids.comm());
-  std::vector<WetBody<dim>> wet;
-  if (const LiquidFluid<dim>* liquid = fluid.liquid())
-    wet = liquid->wet_bodies();
-  this->keep_unseen(displaced_excess<dim>(volumes_, shares_, masses_, *surface_, density,
-                                          fluid.bounds(), fluid.gravity(), wet, solids.comm()),
-                    solids);
+void FluxCoupling<dim>::add_rest(HydrostaticLoads<dim>& loads) const {
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    const ControlVolume<dim>& volume = volumes_[f];
+    for (const FluxShare<dim>& share : shares_[f].all)
+      loads.add_closed(volume, share.solid, share.weight * closed_area(volume), share.center);
+    for (const SurfaceShare<dim>& share : shares_[f].of_thin)
+      loads.add_lumped(volume.direction, share.solid, share.weight * masses_[f], volume.center);
+  }
 }
 
 template <int dim>

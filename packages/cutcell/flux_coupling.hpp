@@ -1,7 +1,6 @@
 #pragma once
 #include <vector>
 
-#include "cutcell/displaced_volume.hpp"
 #include "cutcell/flux_shares.hpp"
 #include "faces/face_coupling.hpp"
 
@@ -11,7 +10,7 @@ struct FluxOptions {
   /// Faces less open than this are closed: their flux then belongs to the solid in both
   /// neighbours, so that nothing is lost, and every pressure has a face of at least this size.
   double smallest_open_fraction = 1e-4;
-  bool correct_buoyancy = true;  ///< see displaced_excess
+  bool correct_buoyancy = true;  ///< see HydrostaticLoads
   FaceWeights weights = FaceWeights::areas;
 };
 
@@ -55,7 +54,7 @@ class FluxCoupling : public FaceCoupling<dim> {
     return (1 - volume.open_fraction) * volume.area;
   }
   void find_prescribed_velocity(const SolidSystem<dim>& solids);
-  void weigh_excess(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids);
+  void add_rest(HydrostaticLoads<dim>& loads) const;
   void assemble_blocks(const SolidSystem<dim>& solids);
   void add_thin_impulses(std::size_t f, double velocity_before,
                          std::vector<Momentum<dim>>& impulses) const;

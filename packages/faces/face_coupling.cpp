@@ -20,8 +20,8 @@ void FaceCoupling<dim>::take_volumes(const FluidDiscretization<dim>& fluid,
   coupling_transposed_ = Teuchos::null;
   added_mass_ = Teuchos::null;
   closed_area_.clear();
-  unseen_.clear();
-  held_unseen_.clear();
+  loads_at_rest_.clear();
+  load_corrections_.clear();
   std::vector<GlobalIndex> unknowns;
   for (const ControlVolume<dim>& volume : volumes_) {
     closed_area_.push_back(closed_area(volume));
@@ -149,21 +149,36 @@ std::vector<double> FaceCoupling<dim>::closed_velocity(const Vector& solid_veloc
 }
 
 template <int dim>
-void FaceCoupling<dim>::keep_unseen(const std::vector<DisplacedExcess<dim>>& excesses,
-                                    const SolidSystem<dim>& solids) {
-  for (const DisplacedExcess<dim>& excess : excesses) {
-    if (surface_->solids()[excess.solid].prescribed)
-      held_unseen_.push_back(excess);
-    else
-      unseen_.push_back(force_of<dim>(excess, solids, *surface_));
-  }
+void FaceCoupling<dim>::find_hydrostatic_loads(
+    const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
+    const std::function<void(HydrostaticLoads<dim>&)>& add) {
+  if (surface_->empty() || fluid.gravity().isZero(0))
+    return;
+  // Where no rank has a face, solids are smaller than cells.
+  const double at_faces = max_all(solids.comm(), volumes_.empty() ? 0 : volumes_.front().density);
+  const double density =
+      at_faces > 0 ? at_faces : fluid.density(surface_->bounds_of_solid(0).center());
+  HydrostaticLoads<dim> loads(fluid, *surface_, density);
+  add(loads);
+  loads.sum(solids.comm());
+  solids_ = &solids;
+  loads_at_rest_ = loads.on_grid();
+  load_corrections_ = loads.corrections();
 }
 
 template <int dim>
-std::vector<Momentum<dim>> FaceCoupling<dim>::add_unseen_buoyancy(const Point<dim>& gravity,
-                                                                  double dt, Vector& rhs) const {
-  add_forces<dim>(unseen_, gravity, dt, rhs);
-  return impulses_on<dim>(surface_->solids().size(), held_unseen_, gravity, dt);
+std::vector<Momentum<dim>> FaceCoupling<dim>::add_hydrostatic_force(double dt,
+                                                                    Vector& momentum) const {
+  if (load_corrections_.empty())
+    return std::vector<Momentum<dim>>(surface_->solids().size());
+  add_loads<dim>(load_corrections_, *solids_, *surface_, dt, momentum);
+  return impulses_on_prescribed<dim>(load_corrections_, *surface_, dt);
+}
+
+template <int dim>
+void FaceCoupling<dim>::add_impulse_at_rest(double dt, Vector& momentum) const {
+  if (!loads_at_rest_.empty())
+    add_loads<dim>(loads_at_rest_, *solids_, *surface_, dt, momentum);
 }
 
 template <int dim>
@@ -179,13 +194,6 @@ Momentum<dim> FaceCoupling<dim>::taken_by_solids(const SolidSystem<dim>& solids,
   if (!gas_pressure.empty())
     add_gas_push(gas_pressure, taken);
   return solids.momentum(taken);
-}
-
-template <int dim>
-double FaceCoupling<dim>::density_around(const FluidDiscretization<dim>& fluid,
-                                         const Communicator& comm) const {
-  const double density = max_all(comm, volumes_.empty() ? 0 : volumes_.front().density);
-  return density > 0 ? density : fluid.density(surface_->bounds_of_solid(0).center());
 }
 
 void add_transposed(const CouplingWeights& weights, const Import& import,

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "faces/axis_force.hpp"
+#include "faces/hydrostatic_load.hpp"
 #include "faces/surface_shares.hpp"
 #include "interfaces/coupling.hpp"
 #include "interfaces/coupling_sides.hpp"
@@ -17,7 +17,7 @@ namespace lockstep {
 template <int dim>
 class FaceCoupling : public Coupling<dim>,
                      public AuditedCoupling<dim>,
-                     public UnseenBuoyancy<dim>,
+                     public HydrostaticCoupling<dim>,
                      public GasCoupling<dim>,
                      public ViscousCoupling<dim>,
                      public SolidFluxes<dim> {
@@ -33,12 +33,12 @@ class FaceCoupling : public Coupling<dim>,
                                 int n_bubbles) const override;
   std::vector<double> closed_velocity(const Vector& solid_velocity,
                                       bool with_prescribed) const override;
-  std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
-                                                 Vector& rhs) const override;
+  std::vector<Momentum<dim>> add_hydrostatic_force(double dt, Vector& momentum) const override;
+  void add_impulse_at_rest(double dt, Vector& momentum) const override;
 
  protected:
-  /// Starts anew with the fluid's coupled volumes: no solids, masses, velocities and unseen
-  /// buoyancy zero. Collective.
+  /// Starts anew with the fluid's coupled volumes: no solids, masses, velocities and hydrostatic
+  /// loads zero. Collective.
   void take_volumes(const FluidDiscretization<dim>& fluid, const SurfaceSnapshot<dim>& surface);
   /// Area of the part of a face that moves with solids [m^(dim-1)].
   virtual double closed_area(const ControlVolume<dim>& volume) const = 0;
@@ -59,14 +59,10 @@ class FaceCoupling : public Coupling<dim>,
                                 const std::vector<double>& velocity_before,
                                 const BlockVector& solution,
                                 const std::vector<double>& gas_pressure) const;
-  /// Density of the fluid at the coupled faces, wherever one has them; else in the middle of a
-  /// solid, of which there must be one. Collective.
-  double density_around(const FluidDiscretization<dim>& fluid, const Communicator& comm) const;
-
-  /// Keeps what `add_unseen_buoyancy` takes off: the displaced masses that the grid has too much
-  /// of. Local.
-  void keep_unseen(const std::vector<DisplacedExcess<dim>>& excesses,
-                   const SolidSystem<dim>& solids);
+  /// Computes the hydrostatic loads. `add` gives the closed parts of faces, and the fluid lumped on
+  /// solids. Collective.
+  void find_hydrostatic_loads(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids,
+                              const std::function<void(HydrostaticLoads<dim>&)>& add);
 
   const SurfaceSnapshot<dim>* surface_ =
       nullptr;  ///< snapshot of the last `assemble`; the caller keeps it alive
@@ -84,8 +80,8 @@ class FaceCoupling : public Coupling<dim>,
                          std::vector<double>& result) const;
 
   std::vector<double> closed_area_;
-  std::vector<AxisForce> unseen_;                  ///< on dynamic solids
-  std::vector<DisplacedExcess<dim>> held_unseen_;  ///< on prescribed ones
+  const SolidSystem<dim>* solids_ = nullptr;  ///< solids of the last `find_hydrostatic_loads`
+  std::vector<AxisLoad<dim>> loads_at_rest_, load_corrections_;
 };
 
 /// rhs += weights^T momentum, one value a row; `import` brings the dofs of the weights. Collective.

@@ -50,7 +50,8 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   const LiquidFluid<dim>* liquid = fluid.liquid();
   masses_ = fluid_masses<dim>(volumes_, surface, options_.whole_cell_mass, liquid);
   find_prescribed(solids);
-  balance(fluid, solids);
+  if (options_.correct_buoyancy)
+    this->find_hydrostatic_loads(fluid, solids, [this](auto& loads) { add_rest(loads); });
   if (!solids.has_unknowns())
     return;
   assemble_weights(solids);
@@ -63,16 +64,14 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
 }
 
 template <int dim>
-void MixedFaceCoupling<dim>::balance(const FluidDiscretization<dim>& fluid,
-                                     const SolidSystem<dim>& solids) {
-  if (!options_.balance || surface_->empty())
-    return;
-  const double density = this->density_around(fluid, solids.comm());
-  const LiquidFluid<dim>* liquid = fluid.liquid();
-  this->keep_unseen(balance_masses<dim>(volumes_, shares_, *surface_, density, fluid.bounds(),
-                                        liquid ? liquid->wet_bodies() : std::vector<WetBody<dim>>(),
-                                        solids.comm(), masses_),
-                    solids);
+void MixedFaceCoupling<dim>::add_rest(HydrostaticLoads<dim>& loads) const {
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    const ControlVolume<dim>& volume = volumes_[f];
+    for (const SurfaceShare<dim>& share : shares_[f]) {
+      loads.add_closed(volume, share.solid, share.weight * volume.area, volume.center);
+      loads.add_lumped(volume.direction, share.solid, share.weight * masses_[f], volume.center);
+    }
+  }
 }
 
 template <int dim>

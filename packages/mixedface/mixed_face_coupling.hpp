@@ -18,7 +18,7 @@ struct MixedFaceOptions {
   Lumping lumping = Lumping::diagonal;
   bool carry_rotations = false;  ///< W of soft solids reproduces rigid motions (LocalRotation)
   bool whole_cell_mass = false;  ///< lump rho V instead of the fluid part
-  bool balance = true;           ///< balanced masses (see balance_masses)
+  bool correct_buoyancy = true;  ///< see HydrostaticLoads
 };
 
 /// The coupling of the paper: every mixed dual cell moves with the solid, W V_S, and its fluid is
@@ -64,7 +64,7 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   const CouplingWeights& mass_weights() const {
     return masses_without_rotations() ? weights_without_rotations_ : weights_;
   }
-  void balance(const FluidDiscretization<dim>& fluid, const SolidSystem<dim>& solids);
+  void add_rest(HydrostaticLoads<dim>& loads) const;
   void find_prescribed(const SolidSystem<dim>& solids);
   void assemble_weights(const SolidSystem<dim>& solids);
 

@@ -44,7 +44,7 @@ MixedFaceOptions options_from(const ParameterList& list) {
     options.lumping = Lumping::paper_diagonal;
   options.carry_rotations = list.get<std::string>("Weights") == "rigid motions";
   options.whole_cell_mass = list.get<std::string>("Fluid Mass") == "whole cell";
-  options.balance = list.get<bool>("Correct Buoyancy");
+  options.correct_buoyancy = list.get<bool>("Correct Buoyancy");
   return options;
 }
 

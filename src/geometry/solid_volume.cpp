@@ -1,5 +1,6 @@
 #include "geometry/solid_volume.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -211,25 +212,25 @@ PartOfSolid<dim> whole_solid(const SurfaceSnapshot<dim>& surface, int solid) {
 
 }  // namespace
 
-// As above, with the column along axis 0 and the fields whose divergences are 1 and x in the box.
+namespace {
+
 template <int dim>
-PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid,
-                               const Box<dim>& box) {
-  const Box<dim> bounds = surface.bounds_of_solid(solid);
+using Rotation = Eigen::Matrix<double, dim, dim>;
+
+/// As above, with the column along axis 0 and the fields whose divergences are 1 and x in the box.
+/// The box, which is finite at the lower end of axis 0, is that of coordinates R (x - origin).
+template <int dim>
+PartOfSolid<dim> part_in_rotated_box(const SurfaceSnapshot<dim>& surface, int solid,
+                                     const Rotation<dim>& rotation, const Box<dim>& box) {
   const PartOfSolid<dim> whole = whole_solid<dim>(surface, solid);
-  if (box.contains(bounds))
-    return whole;
-  PartOfSolid<dim> part{0, whole.centroid};
-  if (!box.intersects(bounds))
-    return part;
   const Point<dim> origin = whole.centroid;  // less round-off
-  const Point<dim> lower = box.min() - origin, upper = box.max() - origin;
+  const Point<dim> lower = box.min() - rotation * origin, upper = box.max() - rotation * origin;
   VolumeMoments<dim> sum;
   const SolidDescription& description = surface.solids()[solid];
   for (int s = description.simplex_begin; s < description.simplex_end; ++s) {
     auto corners = surface.corners(s);
     for (Point<dim>& corner : corners)
-      corner -= origin;
+      corner = rotation * Point<dim>(corner - origin);
     ConvexPart<dim, false> within(corners);
     for (int a = 1; a < dim; ++a) {
       within.keep(a, lower[a], +1);
@@ -247,15 +248,58 @@ PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid,
       add_below<dim>(beyond, lower[0], upper[0], sum);
     }
   }
-  if (sum.volume > 1e-14 * whole.volume) {
-    part.volume = sum.volume;
-    part.centroid = origin + sum.first / sum.volume;
+  if (sum.volume <= 1e-14 * whole.volume)
+    return {0, whole.centroid};
+  return {sum.volume, origin + rotation.transpose() * Point<dim>(sum.first / sum.volume)};
+}
+
+}  // namespace
+
+template <int dim>
+PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid,
+                               const Box<dim>& box) {
+  const Box<dim> bounds = surface.bounds_of_solid(solid);
+  if (box.contains(bounds))
+    return whole_solid<dim>(surface, solid);
+  if (!box.intersects(bounds))
+    return {0, whole_solid<dim>(surface, solid).centroid};
+  return part_in_rotated_box<dim>(surface, solid, Rotation<dim>::Identity(), box);
+}
+
+template <int dim>
+PartOfSolid<dim> part_below(const SurfaceSnapshot<dim>& surface, int solid, const Box<dim>& box,
+                            const Point<dim>& up, double level) {
+  int axis = 0;
+  if (up.cwiseAbs().maxCoeff(&axis) == 1) {
+    Box<dim> part = box;
+    if (up[axis] > 0)
+      part.max()[axis] = std::min(part.max()[axis], level);
+    else
+      part.min()[axis] = std::max(part.min()[axis], -level);
+    return part.isEmpty() ? PartOfSolid<dim>{0, whole_solid<dim>(surface, solid).centroid}
+                          : part_of_solid<dim>(surface, solid, part);
   }
-  return part;
+  const double far = surface.bounds_of_solid(solid).diagonal().norm() +
+                     std::abs(up.dot(surface.bounds_of_solid(solid).center()) - level);
+  // A rotation that takes `up` to axis 0.
+  Rotation<dim> rotation;
+  if constexpr (dim == 2)
+    rotation << up[0], up[1], -up[1], up[0];
+  else
+    rotation =
+        Eigen::Quaterniond::FromTwoVectors(up, Point<dim>(Point<dim>::Unit(0))).toRotationMatrix();
+  const Point<dim> center = rotation * surface.bounds_of_solid(solid).center();
+  Box<dim> half_space(center - Point<dim>::Constant(far), center + Point<dim>::Constant(far));
+  half_space.max()[0] = std::min(half_space.max()[0], level);
+  return part_in_rotated_box<dim>(surface, solid, rotation, half_space);
 }
 
 template PartOfSolid<2> part_of_solid<2>(const SurfaceSnapshot<2>&, int, const Box<2>&);
 template PartOfSolid<3> part_of_solid<3>(const SurfaceSnapshot<3>&, int, const Box<3>&);
+template PartOfSolid<2> part_below<2>(const SurfaceSnapshot<2>&, int, const Box<2>&,
+                                      const Point<2>&, double);
+template PartOfSolid<3> part_below<3>(const SurfaceSnapshot<3>&, int, const Box<3>&,
+                                      const Point<3>&, double);
 template double solid_volume_in_box<2>(const SurfaceSnapshot<2>&, const Box<2>&, int);
 template double solid_volume_in_box<3>(const SurfaceSnapshot<3>&, const Box<3>&, int);
 template double solid_volume_in_box<2>(const SurfaceSnapshot<2>&, const Box<2>&);

@@ -27,4 +27,11 @@ struct PartOfSolid {
 template <int dim>
 PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid, const Box<dim>& box);
 
+/// The part of a closed solid inside `box` and below a plane, where up . x <= level for a unit
+/// vector `up`. Exact, unless both a side of the box and a plane that is not parallel to one cut
+/// the solid: then the box is left out. Local.
+template <int dim>
+PartOfSolid<dim> part_below(const SurfaceSnapshot<dim>& surface, int solid, const Box<dim>& box,
+                            const Point<dim>& up, double level);
+
 }  // namespace lockstep

@@ -32,18 +32,18 @@ class AuditedCoupling {
   }
 };
 
-/// Correction of the hydrostatic force where the control volumes do not resolve a solid's displaced
-/// volume. A coupling without it needs none.
+/// The hydrostatic force on closed solids, apart from what the control volumes make of it
+/// (docs/method.md, "The hydrostatic force"). A coupling without it trusts the grid.
 template <int dim>
-class UnseenBuoyancy {
+class HydrostaticCoupling {
  public:
-  virtual ~UnseenBuoyancy() = default;
-  /// Adds the buoyant impulse over dt on solids whose displaced volume the grid does not see right,
-  /// for a given acceleration g of the fluid [m/s^2]; external in the ledger. Returns that on
-  /// prescribed solids, one per solid of the snapshot, for the forces that are reported.
-  /// Collective.
-  virtual std::vector<Momentum<dim>> add_unseen_buoyancy(const Point<dim>& gravity, double dt,
-                                                         Vector& rhs) const = 0;
+  virtual ~HydrostaticCoupling() = default;
+  /// Adds dt (F_h + B^T p_h - W^T M_F g): the exact force of fluid at rest less that on the grid;
+  /// external in the ledger. Returns it on prescribed solids, one per solid of the snapshot, for
+  /// the forces that are reported. Collective.
+  virtual std::vector<Momentum<dim>> add_hydrostatic_force(double dt, Vector& momentum) const = 0;
+  /// Adds dt (W^T M_F g - B^T p_h): what a solve gives solids in fluid at rest. Local.
+  virtual void add_impulse_at_rest(double dt, Vector& momentum) const = 0;
 };
 
 }  // namespace lockstep

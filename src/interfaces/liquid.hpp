@@ -54,28 +54,12 @@ struct LiquidReport {
   std::optional<DropsReport> drops;    ///< if there may be any
 };
 
-/// Part of a closed solid that lies in a liquid, and the volume that the grid counts for it: below
-/// the plane that fits the free surface around the solid best. Global.
-template <int dim>
-struct WetBody {
-  /// True if the free surface crosses the solid, or the solid is above it. False: it is submerged,
-  /// and the rest is not set.
-  bool partly = false;
-  double volume = 0;  ///< below the free surface [m^dim]
-  Point<dim> centroid =
-      Point<dim>::Zero();  ///< approximate centroid of `volume` [m]; zero without volume
-  /// By axis: the wet parts of the dual cells that the solid blocks or fills, which the pressure
-  /// lifts along that axis, and their first moment [m^dim, m^(dim+1)].
-  std::array<double, dim> displaced{};
-  std::array<Point<dim>, dim> moment{};
-  /// By axis: a wet column of it ends at a side of the domain, where the pressure does not reach.
-  std::array<bool, dim> at_side{};
-  /// The plane of the free surface: the height of a point x above it along the vertical is slope *
-  /// x - level [m]. Slope zero: no free surface is around, as without gravity.
-  Point<dim> slope = Point<dim>::Zero();
-  double level = 0;
-
-  double depth(const Point<dim>& x) const { return std::max(0.0, level - slope.dot(x)); }
+/// Height of the free surface around a solid, along the vertical -g/|g|. Global.
+struct WaterLevel {
+  bool known = false;        ///< false: there is no free surface, or no gravity
+  bool is_in_sight = false;  ///< a part of the surface that the solid sees; else all of it
+  bool pierces = false;      ///< air comes near the solid: it pierces the surface, or is above it
+  double height = 0;         ///< mean of the places where liquid meets air [m]
 };
 
 /// Side interface of fluids: a liquid with a free surface, on which the air exerts no pressure (p =
@@ -90,8 +74,8 @@ class LiquidFluid {
   /// Distance from each point to the surface at the end of the last step [m], 1e300 where nothing
   /// is stored. The same on all ranks. Collective; all ranks ask for the same points.
   virtual std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const = 0;
-  /// By solid of the frozen surface; those that are not closed have nothing. Collective.
-  virtual std::vector<WetBody<dim>> wet_bodies() const = 0;
+  /// By solid of the frozen surface. Collective.
+  virtual std::vector<WaterLevel> levels_at_solids() const = 0;
   virtual LiquidReport report() const = 0;
   virtual bool traps_gas() const { return false; }  ///< reports have `gas`. Local.
   virtual bool has_drops() const { return false; }  ///< reports have `drops`. Local.

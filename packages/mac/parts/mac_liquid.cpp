@@ -3,8 +3,8 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
+#include "liquid/surface/levels_at_solids.hpp"
 #include "liquid/surface/surface_tension.hpp"
-#include "liquid/surface/wet_bodies.hpp"
 #include "mac/parts/grid_place.hpp"
 #include "mac/pressure/extended_pressure.hpp"
 
@@ -35,9 +35,9 @@ std::vector<double> MacLiquid<dim>::surface_distances(const std::vector<Point<di
 }
 
 template <int dim>
-std::vector<WetBody<dim>> MacLiquid<dim>::wet_bodies() const {
-  return find_wet_bodies<dim>(flow_.domain, flow_.geometry, liquid_.interface().distance(),
-                              flow_.parameters.forces.gravity);
+std::vector<WaterLevel> MacLiquid<dim>::levels_at_solids() const {
+  return find_levels_at_solids<dim>(flow_.domain, flow_.geometry, liquid_.interface().distance(),
+                                    flow_.parameters.forces.gravity);
 }
 
 template <int dim>

@@ -43,7 +43,7 @@ struct ComponentSides {
         audited_fluid(components.fluid->audit()),
         viscous_coupling(side_of<ViscousCoupling<dim>>(*components.coupling)),
         audited_coupling(side_of<AuditedCoupling<dim>>(*components.coupling)),
-        unseen_buoyancy(side_of<UnseenBuoyancy<dim>>(*components.coupling)),
+        hydrostatic_coupling(side_of<HydrostaticCoupling<dim>>(*components.coupling)),
         gas_fluid(components.fluid->gas()),
         gas_coupling(side_of<GasCoupling<dim>>(*components.coupling)),
         audited(audited_fluid && audited_coupling && components.solids->is_audited()) {}
@@ -52,7 +52,7 @@ struct ComponentSides {
   const AuditedFluid<dim>* audited_fluid;
   const ViscousCoupling<dim>* viscous_coupling;
   const AuditedCoupling<dim>* audited_coupling;
-  const UnseenBuoyancy<dim>* unseen_buoyancy;
+  const HydrostaticCoupling<dim>* hydrostatic_coupling;
   GasFluid<dim>* gas_fluid;
   GasCoupling<dim>* gas_coupling;
   bool audited;  ///< all that the momentum ledger asks

@@ -148,8 +148,15 @@ EndOfStep<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& context,
   constexpr double round_off = 1e-9;
   const auto momentum = rcp(new Vector(*solids.momentum, Teuchos::Copy));
   EndOfStep<dim> end;
-  if (components_.contact && components_.solids->has_unknowns())
+  if (components_.contact && components_.solids->has_unknowns()) {
+    // Contact acts before the solve, and knows what the solve gives solids in fluid at rest.
+    const auto at_rest = make_vector(components_.solids->map());
+    if (const auto* coupling = side_of<HydrostaticCoupling<dim>>(*components_.coupling))
+      coupling->add_impulse_at_rest(context.dt, *at_rest);
+    momentum->update(1, *at_rest, 1);
     end.contact = hold_contacts(context, *momentum);
+    momentum->update(-1, *at_rest, 1);
+  }
   if (!drag.is_null())
     momentum->update(1, *drag, 1);
   end.solution = converge(context, momentum);

@@ -79,9 +79,8 @@ RCP<Vector> Prediction<dim>::solid_row(const StepContext<dim>& context, const Ex
   if (!components_.solids->has_unknowns())
     return Teuchos::null;
   const RCP<Vector> momentum = solid_forces_.own_momentum(context);
-  if (!expected.of_fluid.is_null() && sides_.unseen_buoyancy)
-    sides_.unseen_buoyancy->add_unseen_buoyancy(components_.fluid->gravity(), context.dt,
-                                                *momentum);
+  if (!expected.of_fluid.is_null() && sides_.hydrostatic_coupling)
+    sides_.hydrostatic_coupling->add_hydrostatic_force(context.dt, *momentum);
   const RCP<Vector> row = system_.lumped_momentum(*momentum);
   if (!expected.of_fluid.is_null())
     components_.coupling->coupling_transposed()->apply(*expected.of_fluid, *row, Teuchos::NO_TRANS,

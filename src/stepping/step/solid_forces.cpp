@@ -65,7 +65,7 @@ SolidMomentum<dim> SolidForces<dim>::momentum(const StepContext<dim>& context,
   if (has_unknowns && context.moves_positions)
     result.momentum->update(
         1, correction.is_null() ? *midpoint_correction(context.dt) : *correction, 1);
-  add_buoyancy(context, result);
+  add_hydrostatic_correction(context, result);
   if (context.moves_positions)
     return result;
   if (has_unknowns) {
@@ -78,21 +78,20 @@ SolidMomentum<dim> SolidForces<dim>::momentum(const StepContext<dim>& context,
 }
 
 template <int dim>
-void SolidForces<dim>::add_buoyancy(const StepContext<dim>& context,
-                                    SolidMomentum<dim>& result) const {
+void SolidForces<dim>::add_hydrostatic_correction(const StepContext<dim>& context,
+                                                  SolidMomentum<dim>& result) const {
   const auto& solids = *components_.solids;
-  const auto buoyancy = make_vector(solids.map());
+  const auto correction = make_vector(solids.map());
   result.on_each.assign(solids.solids().size(), {});
-  if (sides_.unseen_buoyancy)
-    result.on_each = sides_.unseen_buoyancy->add_unseen_buoyancy(components_.fluid->gravity(),
-                                                                 context.dt, *buoyancy);
-  const std::vector<Momentum<dim>> of_each = solids.momentum_of_each(*buoyancy);
+  if (sides_.hydrostatic_coupling)
+    result.on_each = sides_.hydrostatic_coupling->add_hydrostatic_force(context.dt, *correction);
+  const std::vector<Momentum<dim>> of_each = solids.momentum_of_each(*correction);
   add_each(of_each, result.on_each);
   if (!solids.has_unknowns())
     return;
-  result.momentum->update(1, *buoyancy, 1);
+  result.momentum->update(1, *correction, 1);
   if (!context.moves_positions)
-    result.buoyancy = total_of(of_each);
+    result.hydrostatic = total_of(of_each);
 }
 
 template <int dim>

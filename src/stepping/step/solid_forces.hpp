@@ -10,17 +10,17 @@ namespace lockstep {
 /// books are zero where positions are moved.
 template <int dim>
 struct SolidMomentum {
-  RCP<Vector> momentum;    ///< M_S V_S* without contact and viscous drag
-  Momentum<dim> forces;    ///< given by weight, loads and control
-  Momentum<dim> buoyancy;  ///< impulse of buoyancy that the grid does not see
-  Momentum<dim> joints;    ///< at the begin of the step
-  Momentum<dim> drops;     ///< impulse of drops that hit dynamic solids
-  /// Buoyancy that the grid does not see and drops, on every solid, prescribed ones included.
+  RCP<Vector> momentum;       ///< M_S V_S* without contact and viscous drag
+  Momentum<dim> forces;       ///< given by weight, loads and control
+  Momentum<dim> hydrostatic;  ///< exact hydrostatic force less that on the grid
+  Momentum<dim> joints;       ///< at the begin of the step
+  Momentum<dim> drops;        ///< impulse of drops that hit dynamic solids
+  /// Impulses of that difference and of drops on every solid, prescribed ones included.
   std::vector<Momentum<dim>> on_each;
 };
 
-/// Explicit forces on the solids: their own, those of joints at the begin of the step, buoyancy
-/// that the grid does not see, drops that hit them.
+/// Explicit forces on the solids: their own, those of joints at the begin of the step, the
+/// hydrostatic force (see HydrostaticCoupling), drops that hit them.
 template <int dim>
 class SolidForces {
  public:
@@ -38,7 +38,8 @@ class SolidForces {
   RCP<Vector> midpoint_correction(double dt) const;
 
  private:
-  void add_buoyancy(const StepContext<dim>& context, SolidMomentum<dim>& result) const;
+  void add_hydrostatic_correction(const StepContext<dim>& context,
+                                  SolidMomentum<dim>& result) const;
   void add_drops(SolidMomentum<dim>& result) const;
 
   const Components<dim>& components_;

@@ -113,7 +113,7 @@ void StepAudit<dim>::book_forces(const StageResults<dim>& stages, StepReport<dim
              stages.friction.viscous.boundary_impulse - stages.friction.tension);
   ledger.add("surface tension", stages.friction.tension);
   ledger.add("solid forces", stages.solids.forces);
-  ledger.add("unseen buoyancy", stages.solids.buoyancy);
+  ledger.add("hydrostatic force", stages.solids.hydrostatic);
   ledger.add("joints", stages.solids.joints);
   ledger.add("drops", stages.solids.drops);
   ledger.add("contact", stages.end.contact.external_impulse);

@@ -123,7 +123,7 @@ void StepEnergy<dim>::add_solids(const StepContext<dim>& context, const CoupledS
     return impulse.is_null() ? 0 : dot(*impulse, mean);
   };
   const SolidWork own = work_of_models<dim>(solids, context, *solution.velocity, mean);
-  // Buoyancy that the grid does not see, contact and drops have come to the momentum besides.
+  // The hydrostatic force, contact and drops have come to the momentum besides.
   Vector others(*solution.momentum, Teuchos::Copy);
   others.update(-1, *solids.explicit_momentum(context.step.begin, context.dt), 1);
   const double by_friction = work_of(friction), at_start = work_of(context.joints.given);

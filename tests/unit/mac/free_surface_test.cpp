@@ -127,43 +127,6 @@ TEST(FreeSurface, PressureBlockIsSymmetricPositive) {
   expect_symmetric_positive<3>();
 }
 
-/// Compares the volume that the pressure lifts of a box half under water with its wet volume.
-template <int dim>
-void expect_wet_part_of_a_box() {
-  const double h = 0.05;
-  const Point<dim> up = Point<dim>::Unit(dim - 1);
-  Case<dim> scene(cube<dim>(20), h);
-  scene.fluid.set("Gravity", components<dim>(-9.81 * up));
-  add_level<dim>(scene, 0.5 + 0.3 * h);
-  const auto fluid = make_liquid<dim>(scene);
-  Solids<dim> solids;
-  const Point<dim> size = Point<dim>::Constant(0.41), center = Point<dim>::Constant(0.49);
-  solids.add(box_surface<dim>(size, h), center, true);
-  solids.add(box_surface<dim>(Point<dim>::Constant(0.11), h), Point<dim>::Constant(0.12), true);
-  fluid->set_geometry(solids.snapshot(), BlockedFaces<dim>());
-  const std::vector<WetBody<dim>> bodies = fluid->liquid()->wet_bodies();
-  ASSERT_EQ(bodies.size(), 2u);
-  EXPECT_FALSE(bodies[1].partly);
-  const WetBody<dim>& body = bodies[0];
-  EXPECT_TRUE(body.partly);
-  const double bottom = 0.49 - 0.205, depth = 0.5 + 0.3 * h - bottom;
-  EXPECT_NEAR(body.volume, std::pow(0.41, dim - 1) * depth, 1e-12);
-  // The middle counts for cells that the box cuts.
-  EXPECT_NEAR(body.centroid.dot(up), bottom + 0.5 * depth, 0.03 * h);
-  EXPECT_NEAR(body.centroid[0], 0.49, 0.03 * h);
-  // Eight columns: from the centre of the wet cell under the box to the surface.
-  const double column = 0.5 + 0.3 * h - 0.275, section = std::pow(8 * h, dim - 1);
-  EXPECT_NEAR(body.displaced[dim - 1], section * column, 1e-12);
-  EXPECT_NEAR(body.moment[dim - 1][0], section * column * 0.5, 1e-12);
-  // Across, rows of nine dual cells below it, and none above.
-  EXPECT_NEAR(body.displaced[0], std::pow(8 * h, dim - 2) * 9 * h * 4 * h, 1e-12);
-  EXPECT_FALSE(body.at_side[0] || body.at_side[dim - 1]);
-}
-TEST(FreeSurface, WetPartOfABox) {
-  expect_wet_part_of_a_box<2>();
-  expect_wet_part_of_a_box<3>();
-}
-
 /// A diamond from a file, moved.
 TEST(FreeSurface, LiquidFillsAMesh) {
   const std::string file = fmt::format("liquid-{}.obj", world()->getRank());
@@ -244,26 +207,6 @@ TEST(FreeSurface, DryPointsAndLiquidInSolidsAreRefused) {
   const auto in_the_ball = [](Case<2>& scene) { add_ball<2>(scene, {0.8, 0.8}, 0.2); };
   EXPECT_NE(message(in_the_ball, {}).find("nothing is in the domain and outside of solids"),
             std::string::npos);
-}
-
-/// On the bottom of a dry hull, below the level of the sea around.
-TEST(FreeSurface, WhatLiesInADryHullIsDry) {
-  Case<2> scene({48, 48}, 0.1);
-  scene.fluid.set("Gravity", numbers({0.0, -1.0}));
-  add_level<2>(scene, 3.02);
-  scene.fluid.sublist("Free Surface").set("Dry Points", numbers({1.6, 2.0}));
-  Solids<2> solids;
-  solids.add(open_box_surface<2>(Point<2>(3.03, 2.03), 0.1), Point<2>(2.401, 2.601), false);
-  solids.add(ball_surface<2>(0.4, 0.1), Point<2>(2.5, 2.03), true);
-  solids.add(ball_surface<2>(0.4, 0.1), Point<2>(1.32, 3.02), true);
-  const auto fluid = make_liquid<2>(scene);
-  fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
-  const std::vector<WetBody<2>> bodies = fluid->liquid()->wet_bodies();
-  for (const int ball : {1, 2}) {
-    EXPECT_EQ(bodies[ball].volume, 0);
-    for (const double displaced : bodies[ball].displaced)
-      EXPECT_EQ(displaced, 0);
-  }
 }
 
 /// Its surface stays where it is, and tells what it was asked.

@@ -18,7 +18,6 @@ TEST(FluidMass, DualCellMinusSolidByHand) {
   block.surface = rectangle({1.25, 0.75}, {3.25, 2.75});  // cells 1..2 x 1..2 are inside
   block.center = {2.25, 1.75};
   MixedFaceOptions options;
-  options.balance = false;
   CoupledCase<2> c(box, fake_solids<2>({{block}}), options);
   const GatheredFaces<2> faces = gathered_faces(c);
   ASSERT_EQ(faces.volumes.size(), 8u);
@@ -102,80 +101,18 @@ TEST(Lumping, DiagonalConservesEachAxisMass) {
   EXPECT_EQ(off_diagonal.norm(), 0);
 }
 
-/// Sum over the faces of one axis of `value(volume, row)` times (1, transverse arms).
-template <int dim, typename Value>
-Point<dim> axis_moments(const GatheredFaces<dim>& faces, int axis, const Point<dim>& center,
-                        Value value) {
-  Point<dim> sum = Point<dim>::Zero();
-  for (std::size_t f = 0; f < faces.volumes.size(); ++f) {
-    if (faces.volumes[f].direction != axis)
-      continue;
-    const double v = value(faces.volumes[f], static_cast<int>(f));
-    Point<dim> arms = faces.volumes[f].center - center;
-    arms[axis] = 1;  // the zeroth moment in the place of the axis itself
-    sum += v * arms;
-  }
-  return sum;
-}
-
-template <int dim>
-void check_balance(int n_cells, double radius) {
-  const FakeBox<dim> tank = unit_tank<dim>(n_cells);
-  const double cell = std::pow(tank.spacing, dim);
-  for (int k = 0; k < (dim == 2 ? 8 : 3); ++k) {
-    const FakeBody<dim> body = ball<dim>(radius, shifted_center<dim>(k, tank.spacing));
-    const auto properties = volume_properties<dim>(body.surface);
-    MixedFaceOptions options;
-    CoupledCase<dim> balanced(tank, fake_solids<dim>({{body}}), options);
-    options.balance = false;
-    CoupledCase<dim> plain(tank, fake_solids<dim>({{body}}), options);
-    const GatheredFaces<dim> faces = gathered_faces(balanced), raw = gathered_faces(plain);
-    EXPECT_GT(faces.masses.minCoeff(), 0);
-    for (int axis = 0; axis < dim; ++axis) {
-      // V_disc: dual cells of the faces between and inside: area times the distance of the two
-      // pressure points that each column of the body keeps apart.
-      const Point<dim> displaced = axis_moments<dim>(
-          faces, axis, properties.centroid, [&](const ControlVolume<dim>& volume, int) {
-            double height = 0;
-            for (int side = 0; side < 2; ++side) {
-              if (volume.sides[side].unknown != no_index)
-                height += (side == 0 ? -1 : 1) * volume.sides[side].center[axis];
-            }
-            return volume.area * height;
-          });
-      EXPECT_NEAR(displaced[axis] / cell, std::round(displaced[axis] / cell), 1e-9);
-      Point<dim> wanted = tank.density * displaced;
-      wanted[axis] -= tank.density * properties.measure;
-      const auto mass_of = [](const GatheredFaces<dim>& of) {
-        return [&of](const ControlVolume<dim>&, int f) { return of.masses[f]; };
-      };
-      const Point<dim> lumped = axis_moments<dim>(faces, axis, properties.centroid, mass_of(faces));
-      EXPECT_LT((lumped - wanted).norm(), 1e-13);
-      const Point<dim> before = axis_moments<dim>(raw, axis, properties.centroid, mass_of(raw));
-      EXPECT_GT((before - wanted).norm(), 1e-6);  // there was something to balance
-    }
-  }
-}
-
-TEST(Balance, MassesMatchTheDiscreteLift2d) {
-  check_balance<2>(12, 0.26);
-}
-TEST(Balance, MassesMatchTheDiscreteLift3d) {
-  check_balance<3>(8, 0.3);
-}
-
 // Bodies that stick out of the tank displace what is inside, those beyond it nothing.
-TEST(Balance, CountsWhatIsInTheDomain) {
+TEST(HydrostaticForce, CountsWhatIsInTheDomain) {
   FakeBox<2> tank = unit_tank<2>(10);
   tank.open_axis = 1;
-  const Point<2> gravity(0, -9.8);
+  tank.gravity = Point<2>(0, -9.8);
   const auto lift_of = [&](const Point<2>& lower, const Point<2>& upper) {
     FakeBody<2> body;
     body.surface = rectangle(lower, upper);
     body.center = (lower + upper) / 2;
     CoupledCase<2> c(tank, fake_solids<2>({{body}}));
     const auto impulse = make_vector(c.solids.map());
-    c.coupling.add_unseen_buoyancy(gravity, 1, *impulse);
+    c.coupling.add_hydrostatic_force(1, *impulse);
     return dense(*impulse)[1];
   };
   EXPECT_EQ(lift_of({0.3, 1.2}, {0.7, 1.5}), 0);    // above the open top
@@ -185,11 +122,32 @@ TEST(Balance, CountsWhatIsInTheDomain) {
   EXPECT_NEAR(lift_of({-0.3, 0.46}, {0.02, 0.54}), tank.density * 9.8 * 0.02 * 0.08, 1e-14);
 }
 
-// In resting fluid a held body reports the buoyancy of all of its volume, not of what the grid
+/// p̂ = dt rho g . x on the pressure unknowns: that of fluid at rest.
+template <int dim>
+RCP<Vector> pressure_at_rest(const CoupledCase<dim>& c, const FakeBox<dim>& tank, double dt) {
+  const auto pressure = make_vector(c.fluid.pressure_map());
+  for (const auto& face : c.fluid.faces())
+    for (const auto& side : face.volume.sides)
+      if (side.unknown != no_index && c.fluid.pressure_map()->isNodeGlobalElement(side.unknown))
+        pressure->replaceGlobalValue(side.unknown,
+                                     dt * tank.density * tank.gravity.dot(side.center));
+  return pressure;
+}
+
+/// u* = dt g of the coupled volumes.
+template <int dim>
+std::vector<double> falling(const CoupledCase<dim>& c, const FakeBox<dim>& tank, double dt) {
+  std::vector<double> velocity;
+  for (const auto& volume : c.fluid.coupled_volumes())
+    velocity.push_back(dt * tank.gravity[volume.direction]);
+  return velocity;
+}
+
+// In fluid at rest a held body reports the buoyancy of all of its volume, not of what the grid
 // makes of it.
-TEST(Balance, AHeldBodyReportsItsExactBuoyancy) {
-  const FakeBox<2> tank = unit_tank<2>(12);
-  const Point<2> gravity(0.3, -9.8);
+TEST(HydrostaticForce, OfAHeldBodyIsReportedExactly) {
+  FakeBox<2> tank = unit_tank<2>(12);
+  tank.gravity = Point<2>(0.3, -9.8);
   const double dt = 0.1;
   for (const double radius : {0.03, 0.26})
     for (int k = 0; k < 4; ++k) {
@@ -198,20 +156,14 @@ TEST(Balance, AHeldBodyReportsItsExactBuoyancy) {
       CoupledCase<2> c(tank, fake_solids<2>({{body}}));
       const auto properties = volume_properties<2>(body.surface);
       const auto none = make_vector(c.solids.map());
-      Momentum<2> impulse = c.coupling.add_unseen_buoyancy(gravity, dt, *none).at(0);
-      const auto pressure = make_vector(c.fluid.pressure_map());
-      for (const auto& face : c.fluid.faces())
-        for (const auto& side : face.volume.sides)
-          if (side.unknown != no_index && c.fluid.pressure_map()->isNodeGlobalElement(side.unknown))
-            pressure->replaceGlobalValue(side.unknown,
-                                         dt * tank.density * gravity.dot(side.center));
-      std::vector<double> falling, rest;
-      for (const auto& volume : c.fluid.coupled_volumes()) {
-        falling.push_back(dt * gravity[volume.direction]);
-        rest.push_back(0);
-      }
-      const Momentum<2> given = c.coupling.prescribed_impulses(falling, rest, *pressure, {}).at(0);
-      const Point<2> lift = -dt * tank.density * properties.measure * gravity;
+      const Momentum<2> impulse = c.coupling.add_hydrostatic_force(dt, *none).at(0);
+      EXPECT_EQ(none->normInf(), 0);
+      const std::vector<double> rest(c.fluid.coupled_volumes().size(), 0);
+      const Momentum<2> given =
+          c.coupling
+              .prescribed_impulses(falling(c, tank, dt), rest, *pressure_at_rest(c, tank, dt), {})
+              .at(0);
+      const Point<2> lift = -dt * tank.density * properties.measure * tank.gravity;
       EXPECT_LT((impulse.linear - given.linear - lift).norm(), 1e-13) << radius << ' ' << k;
       EXPECT_NEAR(impulse.angular[0] - given.angular[0], cross<2>(properties.centroid, lift)[0],
                   1e-13)
@@ -219,36 +171,59 @@ TEST(Balance, AHeldBodyReportsItsExactBuoyancy) {
     }
 }
 
-// A body the grid hardly sees gets its lift as an impulse. In resting fluid, p̂ = dt rho g . x and
-// u* = dt g, what the discrete pressure, the lumped fluid and the impulse give it is -rho V dt g.
-TEST(Balance, TinyBodyGetsItsExactBuoyantImpulse) {
-  const FakeBox<2> tank = unit_tank<2>(10);
-  const Point<2> gravity(0.3, -9.8);
+/// What the pressure, the lumped fluid and the force give a body in fluid at rest is -rho V dt g at
+/// its centroid, however well the grid sees the body.
+template <int dim>
+void expect_exact_lift(double radius, int n_cells) {
+  FakeBox<dim> tank = unit_tank<dim>(n_cells);
+  tank.gravity = Point<dim>::Constant(0.3);
+  tank.gravity[1] = -9.8;
   const double dt = 0.1;
-  for (int k = 0; k < 8; ++k) {
-    FakeBody<2> body = ball<2>(0.04, shifted_center<2>(k, tank.spacing));
-    CoupledCase<2> c(tank, fake_solids<2>({{body}}));
-    const auto properties = volume_properties<2>(body.surface);
+  for (int k = 0; k < (dim == 2 ? 8 : 3); ++k) {
+    FakeBody<dim> body = ball<dim>(radius, shifted_center<dim>(k, tank.spacing));
+    const auto properties = volume_properties<dim>(body.surface);
+    body.center = properties.centroid;
+    CoupledCase<dim> c(tank, fake_solids<dim>({{body}}));
     const auto impulse = make_vector(c.solids.map());
-    c.coupling.add_unseen_buoyancy(gravity, dt, *impulse);
-    const auto pressure = make_vector(c.fluid.pressure_map());
-    for (const auto& face : c.fluid.faces()) {
-      for (const auto& side : face.volume.sides) {
-        if (side.unknown != no_index && c.fluid.pressure_map()->isNodeGlobalElement(side.unknown))
-          pressure->replaceGlobalValue(side.unknown, dt * tank.density * gravity.dot(side.center));
-      }
-    }
+    c.coupling.add_hydrostatic_force(dt, *impulse);
+    const auto on_grid = make_vector(c.solids.map()), expected = make_vector(c.solids.map());
     if (!c.coupling.coupling_transposed().is_null())
-      c.coupling.coupling_transposed()->apply(*pressure, *impulse, Teuchos::NO_TRANS, -1, 1);
-    std::vector<double> falling;
-    for (const auto& volume : c.fluid.coupled_volumes())
-      falling.push_back(dt * gravity[volume.direction]);
-    c.coupling.add_lumped_momentum(falling, *impulse);
+      c.coupling.coupling_transposed()->apply(*pressure_at_rest(c, tank, dt), *on_grid,
+                                              Teuchos::NO_TRANS, -1, 1);
+    c.coupling.add_lumped_momentum(falling(c, tank, dt), *on_grid);
+    c.coupling.add_impulse_at_rest(dt, *expected);  // what contact is told
+    expected->update(-1, *on_grid, 1);
+    EXPECT_LT(expected->normInf(), 1e-13) << k;
+    EXPECT_GT(impulse->normInf(), 1e-6) << k;  // there was something to correct
+    impulse->update(1, *on_grid, 1);
     const Eigen::VectorXd total = dense(*impulse);
-    const Eigen::Vector2d lift = -dt * tank.density * properties.measure * gravity;
-    EXPECT_LT((total.head<2>() - lift).norm(), 1e-13) << k;
-    EXPECT_NEAR(total[2], 0, 1e-13) << k;
+    const Point<dim> lift = -dt * tank.density * properties.measure * tank.gravity;
+    EXPECT_LT((total.head<dim>() - lift).norm(), 1e-13) << k;
+    EXPECT_LT(total.tail(dim == 2 ? 1 : 3).norm(), 1e-13) << k;
   }
+}
+TEST(HydrostaticForce, IsExactHoweverTheGridSeesTheBody) {
+  for (const double radius : {0.04, 0.26})
+    expect_exact_lift<2>(radius, 10);
+  for (const double radius : {0.05, 0.3})
+    expect_exact_lift<3>(radius, 8);
+}
+
+// Where a wall hides the lower end of a body, nothing lifts it along that axis.
+TEST(HydrostaticForce, DoesNotActWhereAnEndIsHidden) {
+  FakeBox<2> tank = unit_tank<2>(10);
+  tank.gravity = Point<2>(0.3, -9.8);
+  FakeBody<2> body;
+  body.surface = rectangle({0.23, -0.01}, {0.71, 0.56});
+  body.center = {0.47, 0.275};
+  CoupledCase<2> c(tank, fake_solids<2>({{body}}));
+  const auto impulse = make_vector(c.solids.map()), on_grid = make_vector(c.solids.map());
+  c.coupling.add_hydrostatic_force(1, *impulse);
+  EXPECT_EQ(dense(*impulse)[1], 0);
+  c.coupling.coupling_transposed()->apply(*pressure_at_rest(c, tank, 1), *on_grid,
+                                          Teuchos::NO_TRANS, -1, 1);
+  c.coupling.add_lumped_momentum(falling(c, tank, 1), *on_grid);
+  EXPECT_NEAR((dense(*impulse) + dense(*on_grid))[0], -0.3 * tank.density * 0.48 * 0.56, 1e-13);
 }
 
 }  // namespace lockstep::test

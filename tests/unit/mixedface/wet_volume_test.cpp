@@ -12,7 +12,7 @@ namespace {
 struct Level : LiquidFluid<2> {
   double height = 0;
   double surface_distance(const Point<2>& x) const override { return x[1] - height; }
-  std::vector<WetBody<2>> wet_bodies() const override { return {}; }
+  std::vector<WaterLevel> levels_at_solids() const override { return {}; }
   std::vector<double> surface_distances(const std::vector<Point<2>>& points) const override {
     return std::vector<double>(points.size(), 0);
   }

@@ -48,7 +48,7 @@ class Pool : public FakeFluid<2>, public LiquidFluid<2> {
     return std::min(x[1] - 1 - x[0] / 4, std::abs(x[1] - 3.15) - 0.15);
   }
   const LiquidFluid<2>* liquid() const override { return has_surface_ ? this : nullptr; }
-  std::vector<WetBody<2>> wet_bodies() const override { return {}; }
+  std::vector<WaterLevel> levels_at_solids() const override { return {}; }
   LiquidReport report() const override { return {}; }
 
  private:

@@ -24,7 +24,7 @@ using Texts = std::map<std::string, std::string>;  ///< texts of a row, by the n
 template <int dim>
 struct FullLiquid : LiquidFluid<dim> {
   double surface_distance(const Point<dim>&) const override { return 0; }
-  std::vector<WetBody<dim>> wet_bodies() const override { return {}; }
+  std::vector<WaterLevel> levels_at_solids() const override { return {}; }
   std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const override {
     return std::vector<double>(points.size(), 0);
   }

@@ -1,0 +1,156 @@
+#include "faces/hydrostatic_load.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/solid_volume.hpp"
+
+namespace lockstep {
+
+template <int dim>
+HydrostaticLoads<dim>::HydrostaticLoads(const FluidDiscretization<dim>& fluid,
+                                        const SurfaceSnapshot<dim>& surface, double density)
+    : surface_(surface),
+      gravity_(fluid.gravity()),
+      density_(density),
+      spacing_(fluid.smallest_length()),
+      has_level_(fluid.liquid() != nullptr),
+      pressures_(surface.solids().size()),
+      centers_(pressures_.size(), Point<dim>::Zero()),
+      volumes_(pressures_.size(), 0),
+      sums_(pressures_.size()) {
+  const Point<dim> up = -gravity_.normalized();
+  std::vector<WaterLevel> levels;
+  if (has_level_)
+    levels = fluid.liquid()->levels_at_solids();
+  for (int s = 0; s < static_cast<int>(pressures_.size()); ++s) {
+    const SolidDescription& solid = surface.solids()[s];
+    if ((!solid.closed && !solid.rigid) || (has_level_ && !levels[s].known))
+      continue;
+    if (solid.closed && has_level_ && levels[s].pierces && !levels[s].is_in_sight)
+      continue;  // it is in the air
+    RestPressure<dim>& pressure = pressures_[s];
+    pressure.pierces = has_level_ && levels[s].pierces;
+    PartOfSolid<dim> displaced{0, surface.bounds_of_solid(s).center()};
+    if (solid.closed)
+      displaced = pressure.pierces
+                      ? part_below<dim>(surface, s, fluid.bounds(), up, levels[s].height)
+                      : part_of_solid<dim>(surface, s, fluid.bounds());
+    pressure.gradient = density * gravity_;
+    pressure.origin = has_level_ ? Point<dim>(levels[s].height * up) : displaced.centroid;
+    centers_[s] = displaced.centroid;
+    volumes_[s] = displaced.volume;
+  }
+}
+
+template <int dim>
+void HydrostaticLoads<dim>::add_closed(const ControlVolume<dim>& volume, int solid, double area,
+                                       const Point<dim>& center) {
+  const int axis = volume.direction;
+  const RestPressure<dim>& pressure = pressures_[solid];
+  Sum& sum = sums_[solid][axis];
+  sum.area += area;
+  Point<dim> arm = center - centers_[solid];
+  arm[axis] = 0;
+  for (int side = 0; side < 2; ++side) {
+    if (volume.sides[side].unknown == no_index)
+      continue;
+    const double push = side == 0 ? area : -area;
+    const double force = push * pressure(volume.sides[side].center);
+    sum.force += force;
+    sum.moment += force * arm;
+    sum.open_area += push;
+  }
+}
+
+template <int dim>
+void HydrostaticLoads<dim>::add_lumped(int axis, int solid, double mass, const Point<dim>& center) {
+  Point<dim> arm = center - centers_[solid];
+  arm[axis] = 0;
+  Sum& sum = sums_[solid][axis];
+  sum.force += mass * gravity_[axis];
+  sum.moment += mass * gravity_[axis] * arm;
+}
+
+template <int dim>
+void HydrostaticLoads<dim>::sum(const Communicator& comm) {
+  constexpr int n_values = dim + 3;
+  std::vector<double> values;
+  values.reserve(sums_.size() * dim * n_values);
+  for (const auto& solid : sums_)
+    for (const Sum& sum : solid) {
+      values.insert(values.end(), {sum.force, sum.open_area, sum.area});
+      values.insert(values.end(), sum.moment.begin(), sum.moment.end());
+    }
+  if (values.empty())
+    return;
+  sum_all(comm, values.data(), static_cast<int>(values.size()));
+  auto value = values.cbegin();
+  for (auto& solid : sums_)
+    for (Sum& sum : solid) {
+      sum.force = *value++;
+      sum.open_area = *value++;
+      sum.area = *value++;
+      for (double& moment : sum.moment)
+        moment = *value++;
+    }
+}
+
+template <int dim>
+AxisLoad<dim> HydrostaticLoads<dim>::exact(int solid, int axis) const {
+  return {solid, axis, centers_[solid], -density_ * volumes_[solid] * gravity_[axis],
+          Point<dim>::Zero()};
+}
+
+/// True if the grid has the force along an axis but for what it misplaces: the pressure on a face
+/// is that of a point at most a cell away from the surface. More is missing where a wall or another
+/// solid hides an end of the solid, and where the water around it has no one level.
+template <int dim>
+bool HydrostaticLoads<dim>::is_covered(int solid, int axis, const Sum& sum) const {
+  constexpr double round_off = 1e-9;
+  const RestPressure<dim>& pressure = pressures_[solid];
+  if (!pressure.pierces && std::abs(sum.open_area) > round_off * sum.area)
+    return false;
+  double area = 2;  // two ends
+  for (int a = 0; a < dim; ++a)
+    if (a != axis)
+      area *= surface_.bounds_of_solid(solid).sizes()[a] + spacing_;
+  const double misplaced = pressure.gradient.norm() * spacing_ * area;
+  return std::abs(exact(solid, axis).force - sum.force) <= misplaced;
+}
+
+template <int dim>
+std::vector<AxisLoad<dim>> HydrostaticLoads<dim>::on_grid() const {
+  std::vector<AxisLoad<dim>> loads;
+  for (int s = 0; s < static_cast<int>(sums_.size()); ++s)
+    for (int axis = 0; axis < dim && !pressures_[s].gradient.isZero(0); ++axis) {
+      const Sum& sum = sums_[s][axis];
+      // The pressure of closed fluid has no level, so that nothing can be said of a hidden end.
+      const bool is_hidden =
+          !has_level_ && surface_.solids()[s].closed && !is_covered(s, axis, sum);
+      loads.push_back(is_hidden ? exact(s, axis)
+                                : AxisLoad<dim>{s, axis, centers_[s], sum.force, sum.moment});
+    }
+  return loads;
+}
+
+template <int dim>
+std::vector<AxisLoad<dim>> HydrostaticLoads<dim>::corrections() const {
+  std::vector<AxisLoad<dim>> loads;
+  for (int s = 0; s < static_cast<int>(sums_.size()); ++s)
+    for (int axis = 0; axis < dim && !pressures_[s].gradient.isZero(0); ++axis) {
+      const Sum& sum = sums_[s][axis];
+      if (!surface_.solids()[s].closed || !is_covered(s, axis, sum))
+        continue;
+      AxisLoad<dim> load = exact(s, axis);
+      load.force -= sum.force;
+      load.moment -= sum.moment;
+      loads.push_back(load);
+    }
+  return loads;
+}
+
+template class HydrostaticLoads<2>;
+template class HydrostaticLoads<3>;
+
+}  // namespace lockstep

@@ -1,0 +1,69 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "faces/axis_load.hpp"
+#include "interfaces/liquid.hpp"
+
+namespace lockstep {
+
+/// Pressure of the fluid at rest around one solid: p_h = rho g.(x - x0), where it stands out of a
+/// free surface not less than zero, the pressure of the air.
+template <int dim>
+struct RestPressure {
+  Point<dim> gradient = Point<dim>::Zero();  ///< rho g [Pa/m]
+  Point<dim> origin = Point<dim>::Zero();    ///< x0: on the free surface, if there is one [m]
+  bool pierces = false;                      ///< the solid pierces the surface or is above it
+
+  double operator()(const Point<dim>& x) const {
+    const double pressure = gradient.dot(x - origin);
+    return pierces ? std::max(0., pressure) : pressure;
+  }
+};
+
+/// The force of the fluid at rest on closed solids, by axis: F_h, exact for their polyhedra up to
+/// the level of the water around them, and what a solve on the grid makes of it, which is
+/// W^T M_F g - B^T p_h for the weights W, the lumped fluid M_F and the closed faces B of a
+/// coupling. The difference, added to the solids as an explicit force, leaves a body at rest that
+/// is at rest, and changes nothing in the coupled solve (docs/method.md, "The hydrostatic force").
+template <int dim>
+class HydrostaticLoads {
+ public:
+  /// Takes the fluid's gravity, density and levels. Collective.
+  HydrostaticLoads(const FluidDiscretization<dim>& fluid, const SurfaceSnapshot<dim>& surface,
+                   double density);
+
+  /// Adds the part of a face that moves with a solid: its area [m^(dim-1)] and centre. Local.
+  void add_closed(const ControlVolume<dim>& volume, int solid, double area,
+                  const Point<dim>& center);
+  /// Adds fluid of a mass [kg] that is lumped on a solid along an axis, and its centre. Local.
+  void add_lumped(int axis, int solid, double mass, const Point<dim>& center);
+  /// To be called after all of these. Collective.
+  void sum(const Communicator& comm);
+
+  /// W^T M_F g - B^T p_h of closed solids and rigid shells along every axis. Local.
+  std::vector<AxisLoad<dim>> on_grid() const;
+  /// F_h + B^T p_h - W^T M_F g of closed solids, along the axes on which the grid sees both their
+  /// ends. Local.
+  std::vector<AxisLoad<dim>> corrections() const;
+
+ private:
+  struct Sum {
+    double force = 0;                        ///< [N]
+    Point<dim> moment = Point<dim>::Zero();  ///< about the centre, across the axis [N m]
+    double open_area = 0, area = 0;  ///< of closed parts: signed of those beside a pressure; all
+  };
+  bool is_covered(int solid, int axis, const Sum& sum) const;
+  AxisLoad<dim> exact(int solid, int axis) const;
+
+  const SurfaceSnapshot<dim>& surface_;
+  Point<dim> gravity_;
+  double density_, spacing_;
+  bool has_level_;
+  std::vector<RestPressure<dim>> pressures_;  ///< by solid; zero gradient where there is none
+  std::vector<Point<dim>> centers_;           ///< centroids of the displaced volumes [m]
+  std::vector<double> volumes_;               ///< displaced volumes [m^dim]
+  std::vector<std::array<Sum, dim>> sums_;    ///< on the grid
+};
+
+}  // namespace lockstep
