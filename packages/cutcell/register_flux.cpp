@@ -14,8 +14,8 @@ ParameterList valid_parameters() {
                  "Measure of a face's closed part: its own area inside the solids (Ng, Min and "
                  "Gibou 2009) or the volume of its dual cell inside them (Batty et al. 2007).");
   declare(list, "Correct Buoyancy", true,
-          "Correct the weight of every closed body, axis by axis, by the excess of mass that the "
-          "grid displaces, so that a neutrally buoyant one rests exactly.");
+          "Give closed bodies the exact hydrostatic force of their polyhedra in place of what the "
+          "grid makes of it, so that they rest at their draft.");
   return list;
 }
 

@@ -51,7 +51,8 @@ class HydrostaticLoads {
   struct Sum {
     double force = 0;                        ///< [N]
     Point<dim> moment = Point<dim>::Zero();  ///< about the centre, across the axis [N m]
-    double open_area = 0, area = 0;  ///< of closed parts: signed of those beside a pressure; all
+    double open_area = 0;  ///< signed area of the closed parts beside a pressure [m^(dim-1)]
+    double area = 0;       ///< area of all closed parts [m^(dim-1)]
   };
   bool is_covered(int solid, int axis, const Sum& sum) const;
   AxisLoad<dim> exact(int solid, int axis) const;

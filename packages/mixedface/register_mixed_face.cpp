@@ -27,9 +27,8 @@ ParameterList valid_parameters() {
       "Fluid mass of a mixed dual cell: density times the part outside the solids, or times the "
       "whole dual cell.");
   declare(list, "Correct Buoyancy", true,
-          "Correct the lumped masses of every closed body, axis by axis, so that a neutrally "
-          "buoyant one rests "
-          "exactly.");
+          "Give closed bodies the exact hydrostatic force of their polyhedra in place of what the "
+          "grid makes of it, so that they rest at their draft.");
   return list;
 }
 

@@ -171,8 +171,8 @@ TEST(HydrostaticForce, OfAHeldBodyIsReportedExactly) {
     }
 }
 
-/// What the pressure, the lumped fluid and the force give a body in fluid at rest is -rho V dt g at
-/// its centroid, however well the grid sees the body.
+/// The impulses of pressure, lumped fluid and hydrostatic force on a body in fluid at rest add up
+/// to -rho V dt g at its centroid, however well the grid sees the body.
 template <int dim>
 void expect_exact_lift(double radius, int n_cells) {
   FakeBox<dim> tank = unit_tank<dim>(n_cells);
@@ -191,7 +191,7 @@ void expect_exact_lift(double radius, int n_cells) {
       c.coupling.coupling_transposed()->apply(*pressure_at_rest(c, tank, dt), *on_grid,
                                               Teuchos::NO_TRANS, -1, 1);
     c.coupling.add_lumped_momentum(falling(c, tank, dt), *on_grid);
-    c.coupling.add_impulse_at_rest(dt, *expected);  // what contact is told
+    c.coupling.add_impulse_at_rest(dt, *expected);  // for contact
     expected->update(-1, *on_grid, 1);
     EXPECT_LT(expected->normInf(), 1e-13) << k;
     EXPECT_GT(impulse->normInf(), 1e-6) << k;  // there was something to correct
