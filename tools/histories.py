@@ -1,5 +1,6 @@
 """The tables of two runs of one scene, compared number by number: how, says RULE."""
 import csv
+import functools
 import json
 import math
 import pathlib
@@ -15,6 +16,7 @@ numbers without a unit, those of contacts say, are counts: they are the same or 
 OF_CONTACT = "Contact/Tolerance=1e-12"
 OF_THE_SOLVING = re.compile(r"(iterations|residual|error|incompatibility|divergence|seconds)$")
 KEYS = ("step", "name")
+FORMER = re.compile(r'\{"history.csv", "(\w+)",\s*"is called \\"(\w+)\\" now"\}')
 PART = 0.1
 
 
@@ -59,11 +61,22 @@ class Comparison:
         return min(above, key=lambda found: (found.first, -found.first_size), default=None)
 
 
+@functools.lru_cache
+def former_columns():
+    """Former name of a column -> its name."""
+    return dict(FORMER.findall((pathlib.Path(__file__).parents[1] / "src/parameters/former_names.cpp").read_text()))
+
+
+def with_present_names(by_column):
+    """Tables of an older program are compared with those of a newer one."""
+    return {former_columns().get(column, column): value for column, value in by_column.items()}
+
+
 def read_table(path):
     lines = path.read_text().splitlines()
     units = dict(re.match(r"# (.+?) \[([^]]*)\]", line).groups() for line in lines if line.startswith("#"))
     rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    return Table(units, {(int(row["step"]), row.get("name", "")): row for row in rows})
+    return Table(with_present_names(units), {(int(row["step"]), row.get("name", "")): with_present_names(row) for row in rows})
 
 
 def read_tables(folder):

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "parameters/former_names.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 
@@ -17,17 +18,22 @@ namespace {
 const char* const name_characters =
     "0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.";
 
+/// Sentences about a name that no variable has, each with a blank before it.
+std::string help_with(const std::string& unknown, const Variables& variables) {
+  if (const std::string fate = fate_of("history.csv", unknown); !fate.empty())
+    return fmt::format(" \"{}\" {}.", unknown, fate);
+  std::vector<std::string> names;
+  for (const auto& [name, value] : variables)
+    names.push_back(name);
+  const std::string nearest = nearest_name(unknown, names);
+  return (nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest)) +
+         fmt::format(" Known names: {}.", fmt::join(names, ", "));
+}
+
 [[noreturn]] void explain(const mu::Parser::exception_type& error, const std::string& formula,
                           const std::string& where, const Variables& variables) {
-  std::string help;
-  if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
-    std::vector<std::string> names;
-    for (const auto& [name, value] : variables)
-      names.push_back(name);
-    const std::string nearest = nearest_name(error.GetToken(), names);
-    help = nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest);
-    help += fmt::format(" Known names: {}.", fmt::join(names, ", "));
-  }
+  const bool is_unknown = error.GetCode() == mu::ecUNASSIGNABLE_TOKEN;
+  const std::string help = is_unknown ? help_with(error.GetToken(), variables) : "";
   throw InputError(
       fmt::format("{}: cannot evaluate \"{}\": {}{}", where, formula, error.GetMsg(), help));
 }

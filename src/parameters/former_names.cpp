@@ -7,7 +7,7 @@ namespace lockstep {
 namespace {
 
 struct FormerName {
-  std::string list;  ///< one of those on the path to it; empty: any
+  std::string list;  ///< one of those on the path to it, or the table of a column; empty: any
   std::string name;
   std::string fate;
 };
@@ -96,6 +96,11 @@ const std::vector<FormerName>& former_names() {
       {"Output", "Keep Checkpoints",
        "is called \"Count\" now and stands in the list \"Checkpoints\""},
       {"", "Ranks", "is the constant \"ranks\" now, in the list \"Constants\""},
+      // Columns.
+      {"history.csv", "gas_pockets", "is called \"gas_bubbles\" now"},
+      {"history.csv", "lever_impulse_x", "is called \"lumping_torque_error_x\" now"},
+      {"history.csv", "lever_impulse_y", "is called \"lumping_torque_error_y\" now"},
+      {"history.csv", "lever_impulse_z", "is called \"lumping_torque_error_z\" now"},
   };
   return names;
 }

@@ -8,8 +8,8 @@
 
 namespace lockstep {
 
-/// Schema of a whole scene file (design, section 9), put together from the registered plug-ins. The
-/// list "Domain" is that of the fluid of this name, or else of the first registered.
+/// Schema of a whole scene file, put together from the registered plug-ins. The list "Domain" is
+/// that of the fluid of this name, or else of the first registered.
 template <int dim>
 ParameterList scene_parameters(const Registries<dim>& registries, const std::string& fluid = "");
 

@@ -59,7 +59,8 @@ class Studies(unittest.TestCase):
                               text=True, timeout=300)
 
     def test_expressions_are_checked_first(self):
-        for wrong, expected in [("Bal.vy", "Did you mean \"Ball.vy\""), ("Ball.vy +", "Quantity \"speed\"")]:
+        for wrong, expected in [("Bal.vy", "Did you mean \"Ball.vy\""), ("Ball.vy +", "Quantity \"speed\""),
+                                ("2 * gas_pockets", '"gas_pockets" is called "gas_bubbles" now')]:
             with self.subTest(wrong=wrong):
                 result = self.converge(study=STUDY.replace("Ball.vy", wrong))
                 self.assertEqual(result.returncode, 2, result.stderr)

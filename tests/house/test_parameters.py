@@ -51,6 +51,15 @@ class Parameters(unittest.TestCase):
         self.assertGreater(len(everywhere), 5)
         self.assertEqual(everywhere & self.names, set(), "name the list that had it")
 
+    def test_a_former_column_is_called_what_a_table_has(self):
+        former = re.findall(r'\{"history.csv", "(\w+)",\s*"is called \\"(\w+)\\"', (ROOT / "src/parameters/former_names.cpp").read_text())
+        columns = (ROOT / "src/stepping/report/run_columns.cpp").read_text()
+        self.assertGreater(len(former), 3)
+        for names in former:
+            old, new = ('"' + re.sub("_[xyz]$", "_", name) + '"' for name in names)
+            self.assertNotIn(old, columns)
+            self.assertIn(new, columns)
+
     def test_what_counts_as_use(self):
         for text, used in (('<Parameter name="Soft Spot" type="int" value="1"/>', True), ('list.set("Soft Spot", 1);', True),
                            ("Solids/A/Soft Spot=3", True), ("Solids/A/Soft Spot[1]=3", True), ("a Soft Spot", False),

@@ -11,7 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools" / "compare-histories"
 sys.path.insert(0, str(ROOT / "tools"))
-from histories import Table, compare  # noqa: E402
+from histories import Table, compare, read_table  # noqa: E402
 
 UNITS = {"step": "1", "dt": "s", "s1_iterations": "1", "contacts": "1", "cfl": "1", "momentum_x": "kg m/s", "momentum_y": "kg m/s", "energy": "J",
          "momentum_error": "1"}
@@ -41,6 +41,12 @@ class Histories(unittest.TestCase):
         self.assertEqual(found.greatest().size, 0)
         self.assertIsNone(found.first())
         self.assertEqual(found.n_numbers, 2 * 6)
+
+    def test_columns_of_an_older_program_have_their_present_names(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "history.csv"
+            file.write_text("# gas_pockets [1]: of air\nstep,gas_pockets,dt\n1,2,0.5\n")
+            self.assertEqual(read_table(file), Table({"gas_bubbles": "1"}, {(1, ""): {"step": "1", "gas_bubbles": "2", "dt": "0.5"}}))
 
     def test_a_part_in_a_billion(self):
         for column, name in (("energy", "history energy, step 2"), ("momentum_y", "history momentum_y, step 2"), ("cfl", "history cfl, step 2")):

@@ -42,6 +42,17 @@ TEST(Formulas, MistakesAreNamed) {
   }
 }
 
+TEST(Formulas, ColumnsThatHadAnotherNameAreExplained) {
+  try {
+    evaluate("abs(lever_impulse_z)/dt", {{"lumping_torque_error_z", 1}, {"dt", 1}}, "test");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(
+                                  "\"lever_impulse_z\" is called \"lumping_torque_error_z\" now."));
+  }
+  EXPECT_EQ(evaluate("gas_pockets", {{"gas_pockets", 2}}, "test"), 2);
+}
+
 TEST(Formulas, NumbersOfTheSceneByPath) {
   ParameterList scene;
   scene.sublist("Fluid").set("Density", 998.0);
