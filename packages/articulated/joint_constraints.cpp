@@ -57,7 +57,7 @@ std::vector<TwistVector<dim>> JointConstraints<dim>::gather_twists(const Vector&
         twists[b][k] = values[row];
     }
   }
-  sum_all(comm_, twists.data()->data(), static_cast<int>(twists.size()) * n_twist<dim>);
+  sum_over_ranks(comm_, twists);
   return twists;
 }
 
@@ -70,7 +70,7 @@ Eigen::VectorXd JointConstraints<dim>::gather_rates(const Vector& velocity) cons
     if (row >= 0)
       rates[k] = values[row];
   }
-  sum_all(comm_, rates.data(), static_cast<int>(rates.size()));
+  sum_over_ranks(comm_, rates);
   return rates;
 }
 

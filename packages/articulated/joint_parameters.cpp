@@ -53,7 +53,7 @@ class BodyFinder {
 
   /// Finds out which of the bodies found so far carry nodes. Collective.
   void find_carriers() {
-    std::vector<double> carries(bodies_.size(), 0);
+    std::vector<char> carries(bodies_.size(), 0);
     for (const auto& model : setting_.models) {
       for (const NodeAttachment<dim>& node : model->attachments()) {
         const auto place = place_.find(node.solid);
@@ -61,7 +61,7 @@ class BodyFinder {
           carries[place->second] = 1;
       }
     }
-    sum_all(setting_.comm, carries.data(), static_cast<int>(carries.size()));
+    max_over_ranks(setting_.comm, carries);
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       bodies_[b].carries_nodes = carries[b] > 0;
   }

@@ -124,7 +124,7 @@ Eigen::VectorXd JointRates<dim>::gather(const Vector& velocity) const {
   const auto values = velocity.getData();
   if (is_root(comm_))
     std::copy_n(values.begin(), all.size(), all.data());
-  sum_all(comm_, all.data(), static_cast<int>(all.size()));
+  sum_over_ranks(comm_, all);
   return all;
 }
 

@@ -24,7 +24,7 @@ std::vector<double> everywhere(const Vector& vector) {
   const auto mine = vector.getData();
   for (std::size_t k = 0; k < map->getNodeNumElements(); ++k)
     values[map->getGlobalElement(static_cast<int>(k)) - map->getMinAllGlobalIndex()] = mine[k];
-  sum_all(map->getComm(), values.data(), static_cast<int>(n));
+  sum_over_ranks(map->getComm(), values);
   return values;
 }
 

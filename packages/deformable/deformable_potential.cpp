@@ -25,14 +25,14 @@ std::vector<ComputedEnergy> DeformableSolids<dim>::nonlinear_energies(
   for (int i = 0; i < space_.n_local(); ++i)
     x[i] += share(i) * dt * v[i];
   const std::size_t n = bodies_.size();
-  std::vector<double> sums(2 * n, 0);  // values, then round-off
+  std::vector<double> energy(n, 0), size(n, 0);
   Nodes ignored(space_.n_local(), Point<dim>::Zero());
   for (std::size_t b = 0; b < n; ++b) {
     const Body& body = bodies_[b];
     const double part = elastic_share(body);
     for (std::size_t k = 0; k < body.elements.size() && part > 0; ++k) {
-      const double energy = body.elements[k]->add_elastic_forces(x, space_.n_owned(), ignored);
-      sums[b] += body.softening / part * energy;
+      energy[b] += body.softening / part *
+                   body.elements[k]->add_elastic_forces(x, space_.n_owned(), ignored);
     }
   }
   for (int i = 0; i < space_.n_owned(); ++i) {
@@ -40,16 +40,16 @@ std::vector<ComputedEnergy> DeformableSolids<dim>::nonlinear_energies(
       continue;
     const int b = body_of_node_[i];
     const Point<dim> stiff = share(i) * dt * stiffness_.row_times(i, v);
-    sums[b] += dt * v[i].dot(elastic_force_[i] - 0.5 * stiff);
+    energy[b] += dt * v[i].dot(elastic_force_[i] - 0.5 * stiff);
     for (int k = stiffness_.row_begin(i); k < stiffness_.row_end(i); ++k) {
       const double length = (x[stiffness_.column(k)] - x[i]).squaredNorm();
-      sums[n + b] += stiffness_.block(k).cwiseAbs().sum() * length / share(i);
+      size[b] += stiffness_.block(k).cwiseAbs().sum() * length / share(i);
     }
   }
-  sum_all(comm_, sums.data(), static_cast<int>(sums.size()));
+  sum_over_ranks(comm_, energy, size);
   std::vector<ComputedEnergy> energies;
   for (std::size_t b = 0; b < n; ++b)
-    energies.push_back({sums[b], 4 * std::numeric_limits<double>::epsilon() * sums[n + b]});
+    energies.push_back({energy[b], 4 * std::numeric_limits<double>::epsilon() * size[b]});
   return energies;
 }
 
@@ -61,7 +61,7 @@ SolidWork DeformableSolids<dim>::solid_work(double, double dt, const Vector& vel
   const Nodes found = space_.with_ghosts(velocity), before = space_.with_ghosts(*velocity_),
               rate = space_.owned(mean);
   const Nodes& elastic = averaged_forces();
-  double sums[3] = {0, 0, 0};
+  SolidWork work;
   for (int i = 0; i < space_.n_owned(); ++i) {
     const Body& body = bodies_[body_of_node_[i]];
     Point<dim> impulse = dt * elastic[i];
@@ -70,15 +70,11 @@ SolidWork DeformableSolids<dim>::solid_work(double, double dt, const Vector& vel
     if (!limiting_impulse_.empty())
       impulse += limiting_impulse_[i];
     const bool is_explicit = body.integration == TimeIntegration::explicit_forces;
-    sums[0] += rate[i].dot(impulse);
-    sums[1] -= dt * rate[i].dot(damping_.row_times(i, is_explicit ? before : found));
-    sums[2] += dt * rate[i].dot(node_force_[i] + node_mass_[i] * gravity_);
+    work.elastic += rate[i].dot(impulse);
+    work.damping -= dt * rate[i].dot(damping_.row_times(i, is_explicit ? before : found));
+    work.loads += dt * rate[i].dot(node_force_[i] + node_mass_[i] * gravity_);
   }
-  sum_all(comm_, sums, 3);
-  SolidWork work;
-  work.elastic = sums[0];
-  work.damping = sums[1];
-  work.loads = sums[2];
+  sum_over_ranks(comm_, work.elastic, work.damping, work.loads);
   return work;
 }
 
@@ -97,8 +93,7 @@ void DeformableSolids<dim>::bound_frequencies() {
     double& square = squares[body_of_node_[i]];
     square = std::max(square, sum.maxCoeff() / mass);
   }
-  MPI_Allreduce(MPI_IN_PLACE, squares.data(), static_cast<int>(squares.size()), MPI_DOUBLE, MPI_MAX,
-                raw_communicator(comm_));
+  max_over_ranks(comm_, squares);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     bodies_[b].stiffest_rate = std::sqrt(squares[b]);
 }
@@ -114,7 +109,7 @@ void DeformableSolids<dim>::soften(double dt) {
     ++n_held[body_of_node_[dof / dim]];
   for (const auto& attached : attached_)
     ++n_held[body_of_node_[attached.first]];
-  sum_all(comm_, n_held.data(), static_cast<int>(n_held.size()));
+  sum_over_ranks(comm_, n_held);
   bool changed = false;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     Body& body = bodies_[b];

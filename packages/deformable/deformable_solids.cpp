@@ -132,20 +132,11 @@ std::vector<NodeAttachment<dim>> DeformableSolids<dim>::attachments() const {
 template <int dim>
 std::vector<Momentum<dim>> DeformableSolids<dim>::momentum_of_each(
     const Vector& generalized_momentum) const {
-  constexpr int n = dim + n_rotations<dim>;
-  std::vector<double> sums(bodies_.size() * n, 0);
-  const Nodes impulse = space_.owned(generalized_momentum);
-  for (int i = 0; i < space_.n_owned(); ++i) {
-    double* sum = &sums[body_of_node_[i] * n];
-    Eigen::Map<Point<dim>>(sum, dim) += impulse[i];
-    Eigen::Map<AngularVector<dim>>(sum + dim, n_rotations<dim>) += cross<dim>(x_[i], impulse[i]);
-  }
-  sum_all(comm_, sums.data(), static_cast<int>(sums.size()));
   std::vector<Momentum<dim>> all(bodies_.size());
-  for (std::size_t b = 0; b < all.size(); ++b) {
-    all[b].linear = Eigen::Map<Point<dim>>(&sums[b * n], dim);
-    all[b].angular = Eigen::Map<AngularVector<dim>>(&sums[b * n + dim], n_rotations<dim>);
-  }
+  const Nodes impulse = space_.owned(generalized_momentum);
+  for (int i = 0; i < space_.n_owned(); ++i)
+    all[body_of_node_[i]].add(x_[i], impulse[i]);
+  sum_over_ranks(comm_, all);
   return all;
 }
 
@@ -290,8 +281,7 @@ void DeformableSolids<dim>::assemble_forces(const Nodes& x) {
     elastic_force_[i] *= softening;
     stiffness_.scale_row(i, softening);
   }
-  n_clamped_ = sum_all(comm_, n_clamped_);
-  sum_all(comm_, energies.data(), static_cast<int>(energies.size()));
+  sum_over_ranks(comm_, energies, n_clamped_);
   Momentum<dim> load;
   for (int i = 0; i < space_.n_owned(); ++i) {
     load.add(x_[i], node_mass_[i] * gravity_ + node_force_[i]);
@@ -305,8 +295,6 @@ template <int dim>
 void DeformableSolids<dim>::update_states() {
   constexpr int n_turns = n_rotations<dim>;
   using Inertia = Eigen::Matrix<double, n_turns, n_turns>;
-  // Mass times position, momentum, twice the kinetic energy.
-  constexpr int n_first = 2 * dim + 1, n_second = n_turns + n_turns * n_turns;
   const int n_bodies = static_cast<int>(bodies_.size());
   const auto q = make_vector(space_.dof_map());
   apply(*mass_, *velocity_, *q);
@@ -317,23 +305,24 @@ void DeformableSolids<dim>::update_states() {
   const auto weighted = [&](int i) -> Point<dim> {
     return is_massless(i) ? Point<dim>(node_share_[i] * velocity[i]) : momentum[i];
   };
-  std::vector<double> first(n_bodies * n_first, 0), second(n_bodies * n_second, 0);
+  std::vector<Point<dim>> places(n_bodies, Point<dim>::Zero()), velocities = places;
+  std::vector<double> energies(n_bodies, 0);
   for (int i = 0; i < space_.n_owned(); ++i) {
-    double* sum = &first[body_of_node_[i] * n_first];
-    Eigen::Map<Point<dim>>(sum, dim) += weight(i) * x_[i];
-    Eigen::Map<Point<dim>>(sum + dim, dim) += weighted(i);
-    sum[2 * dim] += momentum[i].dot(velocity[i]);
+    const int b = body_of_node_[i];
+    places[b] += weight(i) * x_[i];
+    velocities[b] += weighted(i);
+    energies[b] += 0.5 * momentum[i].dot(velocity[i]);
   }
-  sum_all(comm_, first.data(), static_cast<int>(first.size()));
+  sum_over_ranks(comm_, places, velocities, energies);
   states_.assign(n_bodies, {});
   for (int b = 0; b < n_bodies; ++b) {
     SolidState<dim>& state = states_[b];
     state.name = bodies_[b].name;
     state.mass = bodies_[b].mass;
     const double total = state.mass > 0 ? state.mass : 1;
-    state.center_of_mass = Eigen::Map<Point<dim>>(&first[b * n_first], dim) / total;
-    state.velocity = Eigen::Map<Point<dim>>(&first[b * n_first + dim], dim) / total;
-    state.kinetic_energy = 0.5 * first[b * n_first + 2 * dim];
+    state.center_of_mass = places[b] / total;
+    state.velocity = velocities[b] / total;
+    state.kinetic_energy = energies[b];
     state.elastic_energy = bodies_[b].elastic_energy;
     for (int s = solids_[b].simplex_begin; bodies_[b].closed && s < solids_[b].simplex_end; ++s) {
       std::array<Point<dim>, dim> corners;
@@ -342,23 +331,20 @@ void DeformableSolids<dim>::update_states() {
       state.volume += area_vector<dim>(corners).dot(corners[0] - state.center_of_mass) / dim;
     }
   }
+  std::vector<AngularVector<dim>> spins(n_bodies, AngularVector<dim>::Zero());
+  std::vector<Inertia> inertias(n_bodies, Inertia::Zero());
   for (int i = 0; i < space_.n_owned(); ++i) {
     const int b = body_of_node_[i];
     const Point<dim> arm = x_[i] - states_[b].center_of_mass;
-    double* sum = &second[b * n_second];
-    Eigen::Map<AngularVector<dim>>(sum, n_turns) += cross<dim>(arm, weighted(i));
+    spins[b] += cross<dim>(arm, weighted(i));
     Inertia inertia = arm.squaredNorm() * Inertia::Identity();
     if constexpr (dim == 3)
       inertia -= arm * arm.transpose();
-    Eigen::Map<Inertia>(sum + n_turns, n_turns, n_turns) += weight(i) * inertia;
+    inertias[b] += weight(i) * inertia;
   }
-  sum_all(comm_, second.data(), static_cast<int>(second.size()));
-  for (int b = 0; b < n_bodies; ++b) {
-    const AngularVector<dim> angular =
-        Eigen::Map<AngularVector<dim>>(&second[b * n_second], n_turns);
-    const Inertia inertia = Eigen::Map<Inertia>(&second[b * n_second + n_turns], n_turns, n_turns);
-    states_[b].angular_velocity = inertia.ldlt().solve(angular);
-  }
+  sum_over_ranks(comm_, spins, inertias);
+  for (int b = 0; b < n_bodies; ++b)
+    states_[b].angular_velocity = inertias[b].ldlt().solve(spins[b]);
 }
 
 template class DeformableSolids<2>;

@@ -84,21 +84,18 @@ std::vector<char> DeformableSolids<dim>::free_boundary_nodes() const {
   std::vector<int> n_held(space_.n_owned(), 0);  // axes
   for (const int dof : held_.dofs())
     ++n_held[dof / dim];
-  std::vector<double> n_free(solids_.size(), 0);
+  std::vector<char> result(solids_.size(), 0);
   for (const int node : boundary_nodes_) {
     if (n_held[node] < dim)
-      ++n_free[body_of_node_[node]];
+      result[body_of_node_[node]] = 1;
   }
-  sum_all(comm_, n_free.data(), static_cast<int>(n_free.size()));
-  std::vector<char> result(solids_.size(), 0);
-  for (std::size_t b = 0; b < solids_.size(); ++b)
-    result[b] = n_free[b] > 0;
+  max_over_ranks(comm_, result);
   return result;
 }
 
 template <int dim>
 std::vector<char> DeformableSolids<dim>::can_sweep(const Box<dim>& domain) const {
-  std::vector<double> attached(bodies_.size(), 0);
+  std::vector<char> attached(bodies_.size(), 0);
   std::vector<char> on_surface;
   if (!attached_.empty()) {
     on_surface.assign(space_.n_owned(), 0);
@@ -112,7 +109,7 @@ std::vector<char> DeformableSolids<dim>::can_sweep(const Box<dim>& domain) const
     if (!solids_[b].closed || on_surface[node] != 0)
       attached[b] = 1;
   }
-  sum_all(comm_, attached.data(), static_cast<int>(attached.size()));
+  max_over_ranks(comm_, attached);
   const bool any_shell =
       std::any_of(solids_.begin(), solids_.end(), [](const auto& solid) { return !solid.closed; });
   std::vector<char> has_free_boundary(solids_.size(), 0);

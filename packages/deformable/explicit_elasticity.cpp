@@ -16,7 +16,7 @@ template <int dim>
 void DeformableSolids<dim>::update_largest_stable_step() {
   constexpr double safety = 0.9;
   const int n_bodies = static_cast<int>(bodies_.size());
-  std::vector<double> rates(2 * n_bodies, 0);  // rates of each body: elastic, viscous [1/s]
+  std::vector<double> elastic_rate(n_bodies, 0), viscous_rate(n_bodies, 0);  // [1/s]
   for (int i = 0; i < space_.n_owned(); ++i) {
     const int b = body_of_node_[i];
     const TimeIntegration integration = bodies_[b].integration;
@@ -28,17 +28,17 @@ void DeformableSolids<dim>::update_largest_stable_step() {
       elastic += stiffness_.block(k).cwiseAbs().rowwise().sum();
       viscous += damping_.block(k).cwiseAbs().rowwise().sum();
     }
-    rates[2 * b] = std::max(rates[2 * b], std::sqrt(elastic.maxCoeff() / (2 * least_mass(i))));
+    elastic_rate[b] =
+        std::max(elastic_rate[b], std::sqrt(elastic.maxCoeff() / (2 * least_mass(i))));
     if (integration == TimeIntegration::explicit_forces)
-      rates[2 * b + 1] = std::max(rates[2 * b + 1], viscous.maxCoeff() / (2 * least_mass(i)));
+      viscous_rate[b] = std::max(viscous_rate[b], viscous.maxCoeff() / (2 * least_mass(i)));
   }
-  MPI_Allreduce(MPI_IN_PLACE, rates.data(), 2 * n_bodies, MPI_DOUBLE, MPI_MAX,
-                raw_communicator(comm_));
+  max_over_ranks(comm_, elastic_rate, viscous_rate);
   largest_stable_step_ = 1e300;
   for (int b = 0; b < n_bodies; ++b) {
     Body& body = bodies_[b];
-    body.elastic_step = rates[2 * b] > 0 ? safety / rates[2 * b] : 1e300;
-    const double viscous_step = rates[2 * b + 1] > 0 ? safety / rates[2 * b + 1] : 1e300;
+    body.elastic_step = elastic_rate[b] > 0 ? safety / elastic_rate[b] : 1e300;
+    const double viscous_step = viscous_rate[b] > 0 ? safety / viscous_rate[b] : 1e300;
     largest_stable_step_ = std::min({largest_stable_step_, viscous_step,
                                      longest_sub_stepped(body.elastic_step, body.most_sub_steps)});
   }

@@ -133,8 +133,7 @@ std::optional<TileOwners> NeededTiles<dim>::change(const Communicator& comm,
   for (std::size_t i = 0; i < n; ++i)
     flags[i] = std::binary_search(wanted_.begin(), wanted_.end(), present.tiles[i]);
   flags[n] = lacks_any(present);
-  MPI_Allreduce(MPI_IN_PLACE, flags.data(), static_cast<int>(n + 1), MPI_BYTE, MPI_BOR,
-                raw_communicator(comm));
+  max_over_ranks(comm, flags);
   const auto n_idle = static_cast<std::size_t>(std::count(flags.begin(), flags.end() - 1, 0));
   if (flags[n] == 0 && 4 * n_idle <= n)
     return {};

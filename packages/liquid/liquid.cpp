@@ -56,7 +56,7 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
   dry_points_ = read_dry_points<dim>(list);
   auto watches = read_watches<dim>(list);
   if (!watches.empty())
-    audit_ = std::make_unique<LeakAudit<dim>>(domain, std::move(watches));
+    watched_ = std::make_unique<WatchedPlaces<dim>>(domain, std::move(watches));
   if (const auto gas = read_gas<dim>(fluid); gas.kind != TrappedAir::none)
     gas_ = std::make_unique<GasBubbles<dim>>(domain, gas, gravity);
   const ParameterList& interface = list.sublist("Interface");
@@ -78,8 +78,8 @@ void Liquid<dim>::begin(const Surface& surface) {
       return cell >= 0 && dry[cell] ? std::max(std::abs(distance), domain_.spacing()) : distance;
     };
   }
-  if (audit_)
-    audit_->begin(surface);
+  if (watched_)
+    watched_->begin(surface);
   interface_->initialise(initial_distance_, surface);
   initial_distance_ = nullptr;
 }
@@ -124,13 +124,11 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
   if (acceleration_ > 0)
     filter_shift_ = short_wave_filter<dim>(domain_, geometry, interface_->distance(),
                                            advection_velocity, acceleration_, step.dt);
-  if (audit_)
-    audit_->open(step, *interface_);
   if (gas_)
     gas_->pass_over(step.surface);
   interface_->advance(step);
-  if (audit_)
-    audit_->close(step, *interface_, displacement);
+  if (watched_)
+    watched_->measure(step, *interface_);
 }
 
 template <int dim>
@@ -149,8 +147,8 @@ LiquidReport Liquid<dim>::report() const {
   report.shift = ledger.shift;
   report.lost = ledger.lost;
   report.n_bodies = ledger.n_components;
-  if (audit_)
-    report.watches = audit_->report();
+  if (watched_)
+    report.watches = watched_->report();
   if (gas_)
     report.gas = gas_->report();
   if (drops())
@@ -161,8 +159,8 @@ LiquidReport Liquid<dim>::report() const {
 template <int dim>
 std::vector<std::string> Liquid<dim>::watch_names() const {
   std::vector<std::string> names;
-  if (audit_)
-    for (const Watch<dim>& watch : audit_->watches())
+  if (watched_)
+    for (const Watch<dim>& watch : watched_->watches())
       names.push_back(watch.name);
   return names;
 }
@@ -175,21 +173,9 @@ std::vector<StoredField> Liquid<dim>::fields() {
   };
   if (gas_)
     add(gas_->fields());
-  if (audit_)
-    add(audit_->fields());
+  if (watched_)
+    add(watched_->fields());
   return fields;
-}
-
-template <int dim>
-void Liquid<dim>::load(const CheckpointReader& checkpoint) {
-  interface_->load(checkpoint);
-  forget();
-}
-
-template <int dim>
-void Liquid<dim>::forget() {
-  if (audit_)
-    audit_->forget();
 }
 
 template class Liquid<2>;

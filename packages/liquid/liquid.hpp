@@ -8,7 +8,7 @@
 #include "liquid/liquid_parameters.hpp"
 #include "liquid/surface/free_surface.hpp"
 #include "liquid/surface/velocity_extension.hpp"
-#include "liquid/watch/leak_audit.hpp"
+#include "liquid/watch/watched_places.hpp"
 #include "transport/sample_lattice.hpp"
 
 namespace lockstep {
@@ -42,9 +42,7 @@ class Liquid {
   /// All but the interface's.
   std::vector<StoredField> fields();
   /// The interface's; the fields are set. Collective.
-  void load(const CheckpointReader& checkpoint);
-  /// Forgets data of other tiles, or of another instant. Local.
-  void forget();
+  void load(const CheckpointReader& checkpoint) { interface_->load(checkpoint); }
   /// True if no liquid is given: sources are to bring it.
   bool starts_empty() const { return starts_empty_; }
   GasBubbles<dim>* gas() { return gas_.get(); }  ///< null: none is trapped
@@ -70,7 +68,7 @@ class Liquid {
   std::vector<Point<dim>> dry_points_;
   SignedDistance<dim> initial_distance_;  ///< empty once the liquid is filled in
   std::unique_ptr<InterfaceModel<dim>> interface_;
-  std::unique_ptr<LeakAudit<dim>> audit_;  ///< null: nothing is watched
+  std::unique_ptr<WatchedPlaces<dim>> watched_;  ///< null: nothing is watched
   std::unique_ptr<GasBubbles<dim>> gas_;
 };
 

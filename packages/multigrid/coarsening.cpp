@@ -257,12 +257,11 @@ void sort_by_slab(const LevelGrid& fine, Transfer& transfer) {
 }
 
 /// Sums arrays over the ranks, all of them in one message.
-void sum_over_ranks(const std::vector<std::vector<float>*>& arrays, const Communicator& comm) {
+void sum_arrays(const std::vector<std::vector<float>*>& arrays, const Communicator& comm) {
   std::vector<float> all;
   for (const std::vector<float>* values : arrays)
     all.insert(all.end(), values->begin(), values->end());
-  MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_FLOAT, MPI_SUM,
-                raw_communicator(comm));
+  sum_over_ranks(comm, all);
   const float* next = all.data();
   for (std::vector<float>* values : arrays) {
     std::copy_n(next, values->size(), values->data());
@@ -301,7 +300,7 @@ void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_al
              NaturalStencil& landed, NaturalStencil& coarse) {
   const auto arrays = sums_of(coarse, level.grid.dimension);
   if (from_all_ranks)
-    sum_over_ranks(arrays, blocks.comm);
+    sum_arrays(arrays, blocks.comm);
   if (level.landing)
     level.landing->halo.sum_natural_to_owner(data_of(sums_of(landed, level.grid.dimension)),
                                              data_of(arrays));

@@ -116,7 +116,7 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
           else
             subtract([diagonal](int m) { return diagonal[m] > 0; });
         });
-    sum_all(r.getMap()->getComm(), squares.data(), 3);
+    sum_over_ranks(r.getMap()->getComm(), squares);
     return {std::sqrt(squares[0]), std::sqrt(squares[1]), std::sqrt(squares[2])};
   }
 

@@ -142,8 +142,7 @@ void Multigrid<dim>::add_over_ranks(int level) {
           f(*next++, work.b[LevelGrid::colour(i, j, k)][grid.slot_of_cell(i, j, k)]);
   };
   for_each_cell([](float& copy, float value) { copy = value; });
-  MPI_Allreduce(MPI_IN_PLACE, gathered_.data(), static_cast<int>(gathered_.size()), MPI_FLOAT,
-                MPI_SUM, raw_communicator(layout_->blocks().comm));
+  sum_over_ranks(layout_->blocks().comm, gathered_);
   for_each_cell([](float copy, float& value) { value = copy; });
 }
 

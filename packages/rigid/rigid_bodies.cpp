@@ -111,7 +111,7 @@ std::vector<RigidVector<dim>> RigidBodies<dim>::gather(const Vector& values) con
   std::vector<RigidVector<dim>> result(dynamic_.size());
   std::vector<double> all(result.size() * n_rigid_dofs<dim>, 0);  // zero where others have them
   std::copy(mine.begin(), mine.end(), all.begin() + own_begin_ * n_rigid_dofs<dim>);
-  sum_all(comm_, all.data(), static_cast<int>(all.size()));
+  sum_over_ranks(comm_, all);
   for (std::size_t d = 0; d < result.size(); ++d)
     result[d] = Eigen::Map<const RigidVector<dim>>(all.data() + d * n_rigid_dofs<dim>);
   return result;

@@ -21,6 +21,12 @@ constexpr double least_one_way = 0.5, side_round_off = 1e-6, solid_inaccuracy = 
 struct Rate {
   const PrescribedFlux* source;
   double net = 0, gross = 0;
+
+  template <typename F>
+  void for_each_part(const F& f) {
+    f(net);
+    f(gross);
+  }
 };
 
 /// The region of each unknown that the sources push into (`import`), and the values of the null
@@ -58,8 +64,8 @@ Weights weights_of(const NullSpace& space, const Import& import) {
 /// Returns for each null vector the rates of all sources. One sum over ranks.
 std::vector<std::vector<Rate>> rates_of(const std::vector<PrescribedFlux>& sources,
                                         const Weights& weights, const Communicator& comm) {
-  std::vector<double> sums;
-  for (std::size_t k = 0; k < weights.of_region.size(); ++k) {
+  std::vector<std::vector<Rate>> rates(weights.of_region.size());
+  for (std::size_t k = 0; k < rates.size(); ++k) {
     for (const PrescribedFlux& source : sources) {
       double net = 0, gross = 0;
       for (const auto& [unknown, rate] : source.into) {
@@ -67,19 +73,10 @@ std::vector<std::vector<Rate>> rates_of(const std::vector<PrescribedFlux>& sourc
         net += part;
         gross += std::abs(part);
       }
-      sums.push_back(net);
-      sums.push_back(gross);
+      rates[k].push_back({&source, net, gross});
     }
   }
-  sum_all(comm, sums.data(), static_cast<int>(sums.size()));
-  std::vector<std::vector<Rate>> rates(weights.of_region.size());
-  auto value = sums.begin();
-  for (auto& of_vector : rates) {
-    for (const PrescribedFlux& source : sources) {
-      of_vector.push_back({&source, value[0], value[1]});
-      value += 2;
-    }
-  }
+  sum_over_ranks(comm, rates);
   return rates;
 }
 

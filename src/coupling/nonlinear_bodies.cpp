@@ -40,7 +40,7 @@ NonlinearBodies<dim>::NonlinearBodies(const SolidSystem<dim>& solids) : solids_(
         ++n_held[solid_of_row_[row]];
     }
   }
-  sum_all(solids.comm(), n_held.data(), static_cast<int>(n_held.size()));
+  sum_over_ranks(solids.comm(), n_held);
   for (std::size_t s = 0; s < mass_.size(); ++s)
     mass_[s] = n_held[s] > 0 ? 0 : mass_[s];
 }
@@ -53,7 +53,7 @@ std::vector<double> NonlinearBodies<dim>::dot(const Vector& one, const Vector& o
     if (solid_of_row_[row] >= 0)
       sums[solid_of_row_[row]] += a[row] * b[row];
   }
-  sum_all(solids_.comm(), sums.data(), static_cast<int>(sums.size()));
+  sum_over_ranks(solids_.comm(), sums);
   return sums;
 }
 
@@ -70,7 +70,7 @@ RCP<Vector> NonlinearBodies<dim>::without_translations(const Vector& velocity) c
         mean[dim * solid_of_row_[row] + axis_of_row_[row]] += values[row];
     }
   }
-  sum_all(solids_.comm(), mean.data(), static_cast<int>(mean.size()));
+  sum_over_ranks(solids_.comm(), mean);
   const auto values = result->getDataNonConst();
   for (std::size_t row = 0; row < solid_of_row_.size(); ++row) {
     const int solid = solid_of_row_[row];

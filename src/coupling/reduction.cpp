@@ -99,10 +99,10 @@ Reduction::Reduction(const RCP<const Map>& map, std::vector<Combination> combina
                      std::vector<GlobalIndex> given, const NameOf& name_of)
     : map_(map) {
   const Communicator comm = map->getComm();
-  double counts[2] = {double(combinations.size()), double(given.size())};
-  sum_all(comm, counts, 2);
-  has_given_ = counts[1] > 0;
-  if (counts[0] + counts[1] == 0)
+  std::size_t n_combinations = combinations.size(), n_given = given.size();
+  sum_over_ranks(comm, n_combinations, n_given);
+  has_given_ = n_given > 0;
+  if (n_combinations + n_given == 0)
     return;
   const NameOf called =
       name_of ? name_of : [](GlobalIndex dof) { return fmt::format("Dof {} of the solids", dof); };
@@ -111,7 +111,7 @@ Reduction::Reduction(const RCP<const Map>& map, std::vector<Combination> combina
   given_ = local_rows(*map, given);
   set_zero(given_, *unknowns);
   unknowns_ = unknowns;
-  if (counts[0] == 0)
+  if (n_combinations == 0)
     return;
   std::string failure = merge(combinations, called);
   std::vector<Triplet> triplets;

@@ -41,13 +41,10 @@ SolidSystem<dim>::SolidSystem(std::vector<std::unique_ptr<SolidModel<dim>>> mode
   std::string failure;
   attached_ = find_attached_nodes(models_, begin_, solids_, failure);
   throw_on_all(comm_, failure, static_cast<int>(ExitCode::bad_input));
-  std::vector<double> n_attached(n_models(), 0);
+  carried_.assign(n_models(), 0);
   for (const AttachedNode<dim>& node : attached_)
-    n_attached[node.model] += 1;
-  if (!n_attached.empty())
-    sum_all(comm_, n_attached.data(), n_models());
-  for (const double n : n_attached)
-    carried_.push_back(n > 0 ? 1 : 0);
+    carried_[node.model] = 1;
+  max_over_ranks(comm_, carried_);
   find_reduction();
 }
 

@@ -39,6 +39,11 @@ struct SpinCouples<dim>::Fit {
   AngularVector<dim> strength = AngularVector<dim>::Zero();
   double length = 1;  ///< [m]
 
+  template <typename F>
+  void for_each_part(const F& f) {
+    f(normal);
+    f(strength);
+  }
   /// True if the ends of the couplings determine all rigid motions.
   bool determined() const {
     const Eigen::SelfAdjointEigenSolver<decltype(normal)> solver(normal, Eigen::EigenvaluesOnly);
@@ -49,52 +54,40 @@ struct SpinCouples<dim>::Fit {
 template <int dim>
 void SpinCouples<dim>::place_centers(const std::vector<ViscousCouplingTerm<dim>>& links,
                                      const std::vector<EndVelocity<dim>>& ends) {
-  std::vector<double> sums((dim + 1) * center_.size(), 0);
+  center_.assign(center_.size(), Point<dim>::Zero());
+  std::vector<double> weight(center_.size(), 0);
   for (std::size_t l = 0; l < links.size(); ++l) {
     if (solid_[l] < 0)
       continue;
-    double* sum = &sums[(dim + 1) * solid_[l]];
-    const double weight = weight_of<dim>(links[l]);
-    for (int a = 0; a < dim; ++a)
-      sum[a] += weight * ends[l].position[a];
-    sum[dim] += weight;
+    center_[solid_[l]] += weight_of<dim>(links[l]) * ends[l].position;
+    weight[solid_[l]] += weight_of<dim>(links[l]);
   }
-  sum_all(comm_, sums.data(), static_cast<int>(sums.size()));
-  for (std::size_t s = 0; s < center_.size(); ++s) {
-    const double* sum = &sums[(dim + 1) * s];
-    center_[s].setZero();
-    if (sum[dim] > 0)
-      center_[s] = Eigen::Map<const Point<dim>>(sum) / sum[dim];
-  }
+  sum_over_ranks(comm_, center_, weight);
+  for (std::size_t s = 0; s < center_.size(); ++s)
+    if (weight[s] > 0)
+      center_[s] /= weight[s];
 }
 
 template <int dim>
 std::vector<typename SpinCouples<dim>::Fit> SpinCouples<dim>::fit(
     const std::vector<ViscousCouplingTerm<dim>>& links,
     const std::vector<EndVelocity<dim>>& ends) const {
-  constexpr int n_normal = n_motions<dim> * n_motions<dim>;
-  constexpr int n_each = n_normal + n_rotations<dim>;
-  std::vector<double> sums(n_each * center_.size(), 0);
+  std::vector<Fit> fits(center_.size());
   for (std::size_t l = 0; l < links.size(); ++l) {
     if (solid_[l] < 0)
       continue;
-    double* sum = &sums[n_each * solid_[l]];
+    Fit& fit = fits[solid_[l]];
     const int direction = links[l].direction;
     const Point<dim> arm = ends[l].position - center_[solid_[l]];
     const Motions<dim> motions = motions_at<dim>(arm, direction, 1);
-    Eigen::Map<decltype(Fit::normal)>(sum) +=
-        weight_of<dim>(links[l]) * motions * motions.transpose();
+    fit.normal += weight_of<dim>(links[l]) * motions * motions.transpose();
     const Point<dim> reach = links[l].coefficient * links[l].reach;
     for (int across = 0; across < dim; ++across)
       if (across != direction)  // the axis about which they turn
-        sum[n_normal + (dim == 2 ? 0 : 3 - across - direction)] -= reach[across] * arm[across];
+        fit.strength[dim == 2 ? 0 : 3 - across - direction] -= reach[across] * arm[across];
   }
-  sum_all(comm_, sums.data(), static_cast<int>(sums.size()));
-  std::vector<Fit> fits(center_.size());
-  for (std::size_t s = 0; s < fits.size(); ++s) {
-    Fit& fit = fits[s];
-    fit.normal = Eigen::Map<const decltype(Fit::normal)>(&sums[n_each * s]);
-    fit.strength = Eigen::Map<const AngularVector<dim>>(&sums[n_each * s + n_normal]);
+  sum_over_ranks(comm_, fits);
+  for (Fit& fit : fits) {
     const double translation = fit.normal(0, 0);
     const double rotation = fit.normal(n_motions<dim> - 1, n_motions<dim> - 1);
     if (translation <= 0 || rotation <= 0)
@@ -168,7 +161,7 @@ void SpinCouples<dim>::add_pull(const double* end_velocity, double* pull) const 
   for (std::size_t l = 0; l < solid_.size(); ++l)
     if (solid_[l] >= 0)
       rate(solid_[l]) += end_velocity[l] * spin_[l];
-  sum_all(comm_, rates_.data(), static_cast<int>(rates_.size()));
+  sum_over_ranks(comm_, rates_);
   for (std::size_t l = 0; l < solid_.size(); ++l)
     if (solid_[l] >= 0)
       pull[l] -= spin_[l].dot(strength_[solid_[l]].cwiseProduct(rate(solid_[l])));

@@ -130,22 +130,6 @@ void gather(std::vector<Push>& pushes, const Communicator& comm) {
   merge(pushes);
 }
 
-void sum_over_ranks(Pushes& pushes, const Communicator& comm) {
-  std::vector<double> flat = pushes.others;
-  flat.insert(flat.end(), pushes.norm.begin(), pushes.norm.end());
-  flat.insert(flat.end(), pushes.swept.begin(), pushes.swept.end());
-  sum_all(comm, flat.data(), static_cast<int>(flat.size()));
-  auto value = flat.cbegin();
-  for (double& rate : pushes.others)
-    rate = *value++;
-  for (double& norm : pushes.norm)
-    norm = *value++;
-  for (double& rate : pushes.swept)
-    rate = *value++;
-  if (comm->getSize() > 1)
-    gather(pushes.of, comm);
-}
-
 void find_begins(Pushes& pushes) {
   pushes.begin.assign(pushes.n_solids + 1, 0);
   for (const Push& push : pushes.of)
@@ -201,7 +185,10 @@ Pushes pushes_of(const CrsMatrix& coupling_transposed, const PressureRegions& re
   const auto of_prescribed = prescribed.getData();
   for (std::size_t i = 0; i < regions.of_unknown.size(); ++i)
     pushes.others[regions.of_unknown[i]] += of_prescribed[i];
-  sum_over_ranks(pushes, velocity.getMap()->getComm());
+  const Communicator comm = velocity.getMap()->getComm();
+  sum_over_ranks(comm, pushes.others, pushes.norm, pushes.swept);
+  if (comm->getSize() > 1)
+    gather(pushes.of, comm);
   find_begins(pushes);
   return pushes;
 }

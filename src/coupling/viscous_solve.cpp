@@ -303,7 +303,7 @@ ViscousResult<dim> solve_viscous(
   result.boundary_impulse = fluid.accept_viscous(*fluid_velocity, velocity, dt);
   std::vector<Momentum<dim>> impulses(solids.solids().size());
   impulses.push_back(links.impulse(*pull, *couple_pull, dt, impulses));
-  sum_over_ranks(impulses, solids.comm());
+  sum_over_ranks(solids.comm(), impulses);
   result.boundary_impulse += total_of(impulses);
   impulses.pop_back();
   result.prescribed_impulses = std::move(impulses);

@@ -33,6 +33,13 @@ struct FluidSample {
   bool in_fluid = false;                     ///< false: in a solid or outside; all else is zero
   double pressure = 0;                       ///< [Pa]
   Point<dim> velocity = Point<dim>::Zero();  ///< [m/s]
+
+  template <typename F>
+  void for_each_part(const F& f) {
+    f(in_fluid);
+    f(pressure);
+    f(velocity);
+  }
 };
 
 /// Flow of a fluid through a plane at one place.
@@ -40,6 +47,13 @@ struct FlowSample {
   double open = 0;  ///< part of the plane there that fluid can go through [1]; 0: all else is zero
   double rate = 0;  ///< volume by area, open or not, and time, along the axis [m/s]
   double pressure = 0;  ///< [Pa]
+
+  template <typename F>
+  void for_each_part(const F& f) {
+    f(open);
+    f(rate);
+    f(pressure);
+  }
 };
 
 /// Output of a fluid: samples for observers, fields and surfaces for pictures, notes for

@@ -16,8 +16,6 @@ namespace lockstep {
 struct WatchedLiquid {
   double volume = 0;  ///< [m^dim]
   double target = 0;  ///< target volume [m^dim]
-  double leak =
-      0;  ///< part of the difference that came through solids; with a leak a step fails [m^dim]
 };
 
 /// The gas that is trapped. Global.

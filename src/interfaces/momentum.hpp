@@ -31,6 +31,11 @@ struct Momentum {
     angular -= other.angular;
     return *this;
   }
+  template <typename F>
+  void for_each_part(const F& f) {
+    f(linear);
+    f(angular);
+  }
   friend Momentum operator+(Momentum a, const Momentum& b) { return a += b; }
   friend Momentum operator-(Momentum a, const Momentum& b) { return a -= b; }
 };
@@ -38,27 +43,14 @@ struct Momentum {
 /// Sums each momentum over all ranks, on every rank. Collective.
 template <int dim>
 void sum_over_ranks(std::vector<Momentum<dim>>& momenta, const Communicator& comm) {
-  std::vector<double> values;
-  for (const Momentum<dim>& momentum : momenta) {
-    values.insert(values.end(), momentum.linear.begin(), momentum.linear.end());
-    values.insert(values.end(), momentum.angular.begin(), momentum.angular.end());
-  }
-  sum_all(comm, values.data(), static_cast<int>(values.size()));
-  auto value = values.cbegin();
-  for (Momentum<dim>& momentum : momenta) {
-    for (double& component : momentum.linear)
-      component = *value++;
-    for (double& component : momentum.angular)
-      component = *value++;
-  }
+  sum_over_ranks(comm, momenta);
 }
 
 /// Sums one momentum over all ranks. Collective.
 template <int dim>
-Momentum<dim> sum_over_ranks(const Momentum<dim>& mine, const Communicator& comm) {
-  std::vector<Momentum<dim>> one{mine};
-  sum_over_ranks(one, comm);
-  return one.front();
+Momentum<dim> sum_over_ranks(Momentum<dim> mine, const Communicator& comm) {
+  sum_over_ranks(comm, mine);
+  return mine;
 }
 
 /// Adds one by one: as many as there are in `sums`.

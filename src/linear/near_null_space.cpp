@@ -64,15 +64,15 @@ double stiffness_number(const CrsMatrix& c, const NearNullSpace& space) {
   const std::vector<bool> tied = tied_rows(c, space);
   const RCP<const Vector> diagonal = diagonal_of(c);
   const auto mass = space.mass->getData(), entry = diagonal->getData();
-  double sums[2] = {0, 0};
+  double of_c = 0, of_mass = 0;
   for (std::size_t row = 0; row < tied.size(); ++row) {
     if (tied[row]) {
-      sums[0] += entry[row];
-      sums[1] += mass[row];
+      of_c += entry[row];
+      of_mass += mass[row];
     }
   }
-  sum_all(c.getComm(), sums, 2);
-  return sums[1] > 0 ? sums[0] / sums[1] : 1;
+  sum_over_ranks(c.getComm(), of_c, of_mass);
+  return of_mass > 0 ? of_c / of_mass : 1;
 }
 
 bool is_stiff(double stiffness_number) {

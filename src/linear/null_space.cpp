@@ -31,7 +31,7 @@ std::vector<double> RowRegions::sums_of(const Vector& x) const {
   const auto values = x.getData();
   for (const Run& run : runs)
     sums[run.region] += sum(values.getRawPtr() + run.begin, run.end - run.begin);
-  sum_all(map->getComm(), sums.data(), n_regions);
+  sum_over_ranks(map->getComm(), sums);
   return sums;
 }
 
@@ -39,7 +39,7 @@ std::vector<double> RowRegions::n_rows() const {
   std::vector<double> counts(n_regions, 0);
   for (const Run& run : runs)
     counts[run.region] += run.end - run.begin;
-  sum_all(map->getComm(), counts.data(), n_regions);
+  sum_over_ranks(map->getComm(), counts);
   return counts;
 }
 

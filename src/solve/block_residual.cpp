@@ -108,7 +108,7 @@ std::string by_name(const BlockGroup& group, const Vector& vector, double scale)
   for (const Block& block : group.blocks)
     squares.push_back(sum_of_products(values.getRawPtr() + block.begin,
                                       values.getRawPtr() + block.begin, block.end - block.begin));
-  sum_all(vector.getMap()->getComm(), squares.data(), static_cast<int>(squares.size()));
+  sum_over_ranks(vector.getMap()->getComm(), squares);
   std::vector<std::string> parts;
   for (std::size_t b = 0; b < squares.size(); ++b)
     parts.push_back(fmt::format("{} {:.2e}", group.blocks[b].name,

@@ -48,7 +48,7 @@ KNOWN_HOMES = {"DeformableSolids": 9, "VolumeLedger": 3, "SolidSystem": 3, "Hdf5
 KNOWN_BASES = {"DeformableSolids": 7, "FaceCoupling": 6, "RigidBodies": 5}
 KNOWN_PARAMETERS = {
     "solve_viscous": 11,
-    "add_cells_seen": 8, "advance": 8, "populate_uncovered_scalar": 8, "set": 8, "settle_motion": 8,
+    "advance": 8, "populate_uncovered_scalar": 8, "set": 8, "settle_motion": 8,
     "add": 7, "add_surface_contacts": 7, "advance_row": 7, "answer_to": 7, "apply": 7, "audit_solve": 7, "directed_row": 7,
     "join_impact_zones": 7, "led_to": 7, "mark_near": 7, "multiply": 7, "residual": 7, "residual_at": 7, "populate_uncovered_faces": 7,
     "solve_with_gas": 7, "take_along": 7, "take_lone_particles": 7}

@@ -11,7 +11,7 @@ namespace {
 /// Sums what every rank knows of a small matrix.
 Eigen::MatrixXd summed(Eigen::MatrixXd matrix, const RCP<const Map>& map) {
   const Communicator comm = map->getComm();
-  sum_all(comm, matrix.data(), static_cast<int>(matrix.size()));
+  sum_over_ranks(comm, matrix);
   return matrix;
 }
 
@@ -30,7 +30,7 @@ Eigen::VectorXd dense(const Vector& vector) {
   for (int i = 0; i < values.size(); ++i)
     result[map->getGlobalElement(i)] = values[i];
   const Communicator comm = map->getComm();
-  sum_all(comm, result.data(), static_cast<int>(result.size()));
+  sum_over_ranks(comm, result);
   return result;
 }
 

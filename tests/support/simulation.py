@@ -5,21 +5,22 @@ import os
 import subprocess
 
 SIMULATE = os.environ.get("LOCKSTEP_SIMULATE", "build/release/drivers/simulate")
+AUDITED = os.environ.get("LOCKSTEP_SIMULATE_AUDITED", "build/release/tests/leaks/simulate_audited")
 MPIEXEC = os.environ.get("LOCKSTEP_MPIEXEC", "mpirun")
 STATE = ("x", "y", "vx", "vy")
 FLUID = ("liquid_volume", "fluid_momentum_y", "fluid_kinetic_energy")
 
 
-def attempt(file, output, *options, ranks=1, seconds=300):
-    """However it ends; a run of these tests usually takes a few seconds."""
+def attempt(file, output, *options, ranks=1, seconds=300, audited=False):
+    """However it ends; a run of these tests usually takes a few seconds. `audited`: it ends where liquid goes through a solid."""
     command = [] if ranks == 1 else [MPIEXEC, "--oversubscribe", "-np", str(ranks)]
-    command += [SIMULATE, str(file), "--output", str(output), "--quiet", *map(str, options)]
+    command += [AUDITED if audited else SIMULATE, str(file), "--output", str(output), "--quiet", *map(str, options)]
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=seconds)
 
 
-def simulate(file, output, *options, ranks=1, seconds=300):
-    """Fails with what the program said unless it ends well."""
-    result = attempt(file, output, *options, ranks=ranks, seconds=seconds)
+def simulate(file, output, *options, **more):
+    """Fails with what the program said unless it ends well; `more`: of `attempt`."""
+    result = attempt(file, output, *options, **more)
     assert result.returncode == 0, result.stdout[-4000:]
 
 

@@ -24,7 +24,7 @@ GatheredFaces<dim> gathered_faces(CoupledCase<dim>& c) {
     return all;
   };
   result.masses = in_rows(c.coupling.fluid_mass());
-  sum_all(c.solids.comm(), result.masses.data(), n_rows);
+  sum_over_ranks(c.solids.comm(), result.masses);
   const int n_dofs = static_cast<int>(c.solids.n_unknowns());
   const int n_all = static_cast<int>(c.solids.map()->getGlobalNumElements());
   const Eigen::VectorXd prescribed = in_rows(c.coupling.velocity(*make_vector(c.solids.map())));
@@ -33,7 +33,7 @@ GatheredFaces<dim> gathered_faces(CoupledCase<dim>& c) {
     const auto unit = distributed(Eigen::VectorXd::Unit(n_all, k), c.solids.map());
     result.weights.col(k) = in_rows(c.coupling.velocity(*unit)) - prescribed;
   }
-  sum_all(c.solids.comm(), result.weights.data(), static_cast<int>(result.weights.size()));
+  sum_over_ranks(c.solids.comm(), result.weights);
   return result;
 }
 

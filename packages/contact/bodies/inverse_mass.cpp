@@ -56,7 +56,7 @@ std::vector<double> replicated(const SolidSystem<dim>& system, const Vector& sta
     if (id < system.n_unknowns())
       result[id] = values[row];
   }
-  sum_all(system.comm(), result.data(), static_cast<int>(result.size()));
+  sum_over_ranks(system.comm(), result);
   return result;
 }
 

@@ -34,27 +34,25 @@ std::vector<int> fill_cavities(const MacDomain<dim>& domain, const SolidCells<di
     is_air[cell] = phi[cell] >= 0 && phi[cell] < deep * h;
   const CellGroups voids = find_groups(domain, solids, is_air);
 
-  // Cells of each, whether liquid touches it, and whether it is to stay.
-  std::vector<double> sums(3 * voids.n, 0.0);
+  std::vector<int> n_cells(voids.n, 0), n_wet(voids.n, 0), n_kept(voids.n, 0);
   grid.for_each_owned_cell([&](int cell) {
     const int group = voids.of_cell[cell];
     if (group < 0)
       return;
-    sums[3 * group] += 1;
-    sums[3 * group + 2] += at_open_side(domain, cell);
+    ++n_cells[group];
+    n_kept[group] += at_open_side(domain, cell);
     for (int i = 0; i < 2 * dim; ++i) {
       const int other = solids.seen_neighbor(grid, cell, i / 2, i % 2);
       if (other < 0)
         continue;
-      sums[3 * group + 1] += phi[other] < 0;
-      sums[3 * group + 2] += phi[other] >= deep * h;
+      n_wet[group] += phi[other] < 0;
+      n_kept[group] += phi[other] >= deep * h;
     }
   });
-  sum_all(grid.comm(), sums.data(), static_cast<int>(sums.size()));
+  sum_over_ranks(grid.comm(), n_cells, n_wet, n_kept);
   std::vector<char> is_small(voids.n);
   for (int group = 0; group < voids.n; ++group)
-    is_small[group] =
-        sums[3 * group] <= most_cells && sums[3 * group + 1] > 0 && sums[3 * group + 2] == 0;
+    is_small[group] = n_cells[group] <= most_cells && n_wet[group] > 0 && n_kept[group] == 0;
   if (std::count(is_small.begin(), is_small.end(), 1) == 0)
     return filled;
 
@@ -67,7 +65,7 @@ std::vector<int> fill_cavities(const MacDomain<dim>& domain, const SolidCells<di
     if (spaces.of_cell[cell] >= 0 && phi[cell] >= 0 && !is_in_small(cell))
       remaining[spaces.of_cell[cell]] += 1;
   });
-  sum_all(grid.comm(), remaining.data(), spaces.n);
+  sum_over_ranks(grid.comm(), remaining);
   grid.for_each_owned_cell([&](int cell) {
     if (!is_in_small(cell) || remaining[spaces.of_cell[cell]] == 0)
       return;

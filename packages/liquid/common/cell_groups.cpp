@@ -148,13 +148,13 @@ bool at_band_edge(const TiledGrid<dim>& grid, int cell) {
 /// All groups at the rim of the cells that are stored become the first of them.
 template <int dim>
 void join_at_band_edge(const TiledGrid<dim>& grid, CellGroups& groups) {
-  std::vector<double> touches(groups.n, 0.0);
+  std::vector<char> touches(groups.n, 0);
   grid.for_each_owned_cell([&](int cell) {
     const int group = groups.of_cell[cell];
     if (group >= 0 && touches[group] == 0)
       touches[group] = at_band_edge(grid, cell);
   });
-  sum_all(grid.comm(), touches.data(), groups.n);
+  max_over_ranks(grid.comm(), touches);
   int first = 0;
   while (first < groups.n && touches[first] == 0)
     ++first;

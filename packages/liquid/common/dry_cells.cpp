@@ -1,6 +1,5 @@
 #include "liquid/common/dry_cells.hpp"
 
-#include "base/errors.hpp"
 #include "liquid/common/flood.hpp"
 #include "liquid/common/seen_cells.hpp"
 
@@ -14,19 +13,9 @@ std::vector<char> find_dry_cells(const MacDomain<dim>& domain, const SignedDista
   std::vector<char> dry(grid.n_stored_cells(), 0);
   std::vector<int> front;
   for (const Point<dim>& point : points) {
-    const std::string x = fmt::format("{}", fmt::join(point.data(), point.data() + dim, ", "));
-    const int cell = grid.cell_containing(point);
-    const bool here = cell >= 0 && grid.owned(cell) && grid.in_domain(cell);
-    check_input(sum_all(grid.comm(), static_cast<GlobalIndex>(here)) > 0,
-                "The dry point {} in \"Free Surface\" lies outside of the domain.", x);
-    check_input(surface.empty() || surface.snapshot().inside(point) < 0,
-                "The dry point {} in \"Free Surface\" lies inside a solid.", x);
-    const std::vector<int> seen = cells_seen_from<dim>(point, domain, surface);
-    check_input(sum_all(grid.comm(), static_cast<GlobalIndex>(seen.size())) > 0,
-                "The dry point {} in \"Free Surface\" sees no centre of a cell; move it away from "
-                "the solids, or take smaller cells.",
-                x);
-    for (const int start : seen)
+    const std::string name = fmt::format("dry point {} in \"Free Surface\"",
+                                         fmt::join(point.data(), point.data() + dim, ", "));
+    for (const int start : cells_seen_from_given<dim>(point, name, domain, surface))
       if (!dry[start] && distance(grid.center(start)) < 0) {
         dry[start] = 1;
         front.push_back(start);

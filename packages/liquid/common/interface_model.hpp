@@ -29,12 +29,6 @@ struct LiquidLedger {
   int n_components = 0;  ///< connected liquid components
 };
 
-/// Stored cells (1) with liquid, owned and of the halo of width 1.
-struct LiquidCells {
-  std::vector<char> seen;    ///< not solid; wet, or a drop that the grid does not show is in sight
-  std::vector<char> hidden;  ///< owned: such a drop is in a gap that no centre of a cell sees
-};
-
 /// Input of an interface's motion over one step.
 template <int dim>
 struct InterfaceStep {
@@ -84,14 +78,6 @@ class InterfaceModel : public PlugIn {
   virtual LiquidLedger ledger() const = 0;
   /// Drops that have left the interface; null: none ever does. Local.
   virtual Drops<dim>* drops() const { return nullptr; }
-  /// Marks the cells with liquid among the present solids. Collective. Default: the wet cells.
-  virtual LiquidCells cells_with_liquid(const Surface&, KeptSurface<dim>&) {
-    const CellField& phi = distance();
-    LiquidCells cells{std::vector<char>(phi.size()), std::vector<char>(phi.size(), 0)};
-    for (std::size_t cell = 0; cell < phi.size(); ++cell)
-      cells.seen[cell] = phi[cell] < 0;
-    return cells;
-  }
   /// Measures the volume and target of the liquid in some stored cells (1); after a step.
   /// Collective. Default: throws InputError.
   virtual WatchedLiquid liquid_in(const std::vector<char>& /*cells*/) const {

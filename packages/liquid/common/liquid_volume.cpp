@@ -293,7 +293,7 @@ double LiquidVolume<dim>::at_corner(const CutBox& box, int corner, const CellFie
 
 template <int dim>
 void LiquidVolume<dim>::add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
-                                std::vector<double>& sums) const {
+                                GroupVolumes& sums) const {
   const double shift = probe * domain_.spacing();
   std::array<double, n_corners> values, lower;
   int n_wet = 0, n_credited = 0;
@@ -310,17 +310,17 @@ void LiquidVolume<dim>::add_cut(const CutBox& box, const CellField& phi, const C
   const double area =
       n_wet == n_corners ? 0 : (wet_fraction<dim>(lower) - fraction) * box.volume / shift;
   if (n_credited == 0)
-    sums.back() += volume;
+    sums.loose += volume;
   for (int k = 0; k < n_corners; ++k)
     if (const int group = groups.of_cell[box.corners[k]]; values[k] < 0 && group >= 0) {
-      sums[group] += volume / n_credited;
-      sums[groups.n + group] += area / n_credited;
+      sums.volume[group] += volume / n_credited;
+      sums.area[group] += area / n_credited;
     }
 }
 
 template <int dim>
 void LiquidVolume<dim>::add_divided(const DividedCell& of, const CellField& phi,
-                                    const CellGroups& groups, std::vector<double>& sums) const {
+                                    const CellGroups& groups, GroupVolumes& sums) const {
   const double h = domain_.spacing();
   const double fraction = std::clamp(0.5 - phi[of.cell] / h, 0.0, 1.0);
   if (fraction == 0)
@@ -331,17 +331,18 @@ void LiquidVolume<dim>::add_divided(const DividedCell& of, const CellField& phi,
       wet = other;
   const int group = phi[wet] < 0 ? groups.of_cell[wet] : -1;
   if (group < 0) {
-    sums.back() += fraction * of.volume;
+    sums.loose += fraction * of.volume;
   } else {
-    sums[group] += fraction * of.volume;
-    sums[groups.n + group] += fraction < 1 ? of.volume / h : 0;
+    sums.volume[group] += fraction * of.volume;
+    sums.area[group] += fraction < 1 ? of.volume / h : 0;
   }
 }
 
 template <int dim>
 GroupVolumes LiquidVolume<dim>::measure(const CellField& phi, const CellGroups& groups) const {
-  // Volumes, then areas, then what is loose.
-  std::vector<double> sums(2 * groups.n + 1, 0.0);
+  GroupVolumes sums;
+  sums.volume.assign(groups.n, 0);
+  sums.area.assign(groups.n, 0);
   for (const CutBox& box : cut_)
     add_cut(box, phi, groups, sums);
   for (const DividedCell& of : divided_)
@@ -351,14 +352,10 @@ GroupVolumes LiquidVolume<dim>::measure(const CellField& phi, const CellGroups& 
       const int first = cell, group = groups.of_cell[cell];
       while (cell < end && groups.of_cell[cell] == group)
         ++cell;
-      (group < 0 ? sums.back() : sums[group]) += (cell - first) * run.volume;
+      (group < 0 ? sums.loose : sums.volume[group]) += (cell - first) * run.volume;
     }
-  sum_all(domain_.grid.comm(), sums.data(), static_cast<int>(sums.size()));
-  GroupVolumes result;
-  result.volume.assign(sums.begin(), sums.begin() + groups.n);
-  result.area.assign(sums.begin() + groups.n, sums.end() - 1);
-  result.loose = sums.back();
-  return result;
+  sum_over_ranks(domain_.grid.comm(), sums.volume, sums.area, sums.loose);
+  return sums;
 }
 
 template class LiquidVolume<2>;

@@ -62,9 +62,9 @@ class LiquidVolume {
   /// phi at a corner of a box.
   double at_corner(const CutBox& box, int corner, const CellField& phi) const;
   void add_cut(const CutBox& box, const CellField& phi, const CellGroups& groups,
-               std::vector<double>& sums) const;
+               GroupVolumes& sums) const;
   void add_divided(const DividedCell& of, const CellField& phi, const CellGroups& groups,
-                   std::vector<double>& sums) const;
+                   GroupVolumes& sums) const;
 
   const MacDomain<dim>& domain_;
   std::vector<CutBox> cut_;

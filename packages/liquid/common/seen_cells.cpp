@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/errors.hpp"
+
 namespace lockstep {
 
 template <int dim>
@@ -34,11 +36,34 @@ std::vector<int> cells_seen_from(const Point<dim>& point, const MacDomain<dim>& 
   return seen;
 }
 
+template <int dim>
+std::vector<int> cells_seen_from_given(const Point<dim>& point, const std::string& name,
+                                       const MacDomain<dim>& domain,
+                                       const NearbySurface<dim>& surface) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const int cell = grid.cell_containing(point);
+  const bool here = cell >= 0 && grid.owned(cell) && grid.in_domain(cell);
+  check_input(sum_all(grid.comm(), static_cast<GlobalIndex>(here)) > 0,
+              "The {} lies outside of the domain.", name);
+  check_input(surface.empty() || surface.snapshot().inside(point) < 0,
+              "The {} lies inside a solid.", name);
+  std::vector<int> seen = cells_seen_from<dim>(point, domain, surface);
+  check_input(sum_all(grid.comm(), static_cast<GlobalIndex>(seen.size())) > 0,
+              "The {} sees no centre of a cell; move it away from the solids, or take smaller "
+              "cells.",
+              name);
+  return seen;
+}
+
 template Point<2> way_between<2>(const MacDomain<2>&, const Point<2>&, const Point<2>&);
 template Point<3> way_between<3>(const MacDomain<3>&, const Point<3>&, const Point<3>&);
 template std::vector<int> cells_seen_from<2>(const Point<2>&, const MacDomain<2>&,
                                              const NearbySurface<2>&);
 template std::vector<int> cells_seen_from<3>(const Point<3>&, const MacDomain<3>&,
                                              const NearbySurface<3>&);
+template std::vector<int> cells_seen_from_given<2>(const Point<2>&, const std::string&,
+                                                   const MacDomain<2>&, const NearbySurface<2>&);
+template std::vector<int> cells_seen_from_given<3>(const Point<3>&, const std::string&,
+                                                   const MacDomain<3>&, const NearbySurface<3>&);
 
 }  // namespace lockstep

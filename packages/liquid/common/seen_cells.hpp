@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <vector>
 
 #include "staggered/domain/mac_domain.hpp"
@@ -16,5 +17,12 @@ Point<dim> way_between(const MacDomain<dim>& domain, const Point<dim>& from, con
 template <int dim>
 std::vector<int> cells_seen_from(const Point<dim>& point, const MacDomain<dim>& domain,
                                  const NearbySurface<dim>& surface);
+
+/// Likewise, of a point that a scene gives, `name`d in messages: throws InputError if it lies
+/// outside of the domain or in a solid, or sees no centre. Collective.
+template <int dim>
+std::vector<int> cells_seen_from_given(const Point<dim>& point, const std::string& name,
+                                       const MacDomain<dim>& domain,
+                                       const NearbySurface<dim>& surface);
 
 }  // namespace lockstep

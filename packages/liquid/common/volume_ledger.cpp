@@ -123,7 +123,7 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
         out[body] += speed * per_speed * wet * open;
       });
     }
-  sum_all(grid.comm(), out.data(), groups_.n);
+  sum_over_ranks(grid.comm(), out);
   for (int group = 0; group < groups_.n; ++group) {
     // a long step may let out more than a small component has
     double& target = targets_.of_group[group];

@@ -34,7 +34,7 @@ std::vector<double> VolumeLedger<dim>::take_drops(const SolidCells<dim>& solids,
     else
       ++n_far;
   }
-  sum_all(comm, wanted.data(), groups_.n);
+  sum_over_ranks(comm, wanted);
   std::vector<double> part(groups_.n);
   for (int body = 0; body < groups_.n; ++body) {
     part[body] = part_of(targets_.of_group[body], wanted[body]);
@@ -52,7 +52,7 @@ std::vector<double> VolumeLedger<dim>::take_drops(const SolidCells<dim>& solids,
   for (const int cell : cells)
     if (nearest[cell] < 0 && spaces.of_cell[cell] >= 0)
       wanted_in[spaces.of_cell[cell]] += volume;
-  sum_all(comm, wanted_in.data(), spaces.n);
+  sum_over_ranks(comm, wanted_in);
   for (int body = 0; body < groups_.n; ++body)
     there[space[body]] += std::max(targets_.of_group[body], 0.0);
   for (int body = 0; body < groups_.n; ++body) {
@@ -77,7 +77,7 @@ void VolumeLedger<dim>::give_drops(const std::vector<int>& cells,
   std::vector<double> given(groups_.n, 0);
   for (std::size_t i = 0; i < cells.size(); ++i)
     given[groups_.of_cell[cells[i]]] += volumes[i];
-  sum_all(comm, given.data(), groups_.n);
+  sum_over_ranks(comm, given);
   for (int body = 0; body < groups_.n; ++body)
     targets_.of_group[body] += given[body];
 }

@@ -186,11 +186,11 @@ double Drops<dim>::kinetic_energy() const {
 
 template <int dim>
 void Drops<dim>::count() {
-  std::array<double, 2> sums{static_cast<double>(state_.drops.size()), 0};
+  DropsReport& report = state_.report;
+  report = {static_cast<long long>(state_.drops.size()), 0};
   for (const Drop<dim>& drop : state_.drops)
-    sums[1] += drop.volume;
-  sum_all(domain_.grid.comm(), sums.data(), 2);
-  state_.report = {static_cast<long long>(sums[0]), sums[1]};
+    report.volume += drop.volume;
+  sum_over_ranks(domain_.grid.comm(), report.n, report.volume);
 }
 
 template <int dim>
@@ -226,17 +226,17 @@ void Drops<dim>::redistribute() {
 template <int dim>
 void Drops<dim>::hand_out(const std::vector<Drop<dim>>& drops, const std::vector<int>& holder) {
   const TiledGrid<dim>& grid = domain_.grid;
-  std::vector<double> n_owners(drops.size(), 0);
+  std::vector<char> has_owner(drops.size(), 0);
   for (std::size_t i = 0; i < drops.size(); ++i) {
     const int cell = grid.cell_containing(drops[i].position);
     if (cell < 0 || !grid.owned(cell))
       continue;
-    n_owners[i] = 1;
+    has_owner[i] = 1;
     state_.drops.push_back(drops[i]);
   }
-  sum_all(grid.comm(), n_owners.data(), static_cast<int>(n_owners.size()));
+  max_over_ranks(grid.comm(), has_owner);
   for (std::size_t i = 0; i < drops.size(); ++i)
-    if (n_owners[i] == 0 && holder[i] == grid.comm()->getRank())
+    if (!has_owner[i] && holder[i] == grid.comm()->getRank())
       state_.drops.push_back(drops[i]);
 }
 

@@ -103,46 +103,41 @@ class Books {
                                                                                           : 0;
   }
   void add_up() {
-    std::vector<double> sums(3 * n_ + 1, 0.0);
+    for (auto* sums : {&defect_, &rooms_[0], &rooms_[1], &share_})
+      sums->assign(n_, 0.0);
     domain_.grid.for_each_owned_cell([&](int cell) {
       const double defect = fractions_.defect[cell];
       const int body = body_[cell];
       if (body < 0) {
-        sums.back() += std::abs(defect);
+        unassigned_ += std::abs(defect);
         return;
       }
-      sums[body] += defect;
+      defect_[body] += defect;
       if (!solids_.is_fluid(cell))
         return;
       for (const int takes : {0, 1})
-        sums[(1 + takes) * n_ + body] +=
-            redistribution_weight(cell, takes) * fractions_.open_part(cell);
+        rooms_[takes][body] += redistribution_weight(cell, takes) * fractions_.open_part(cell);
     });
-    sum_all(domain_.grid.comm(), sums.data(), static_cast<int>(sums.size()));
-    defect_.assign(sums.begin(), sums.begin() + n_);
-    rooms_[0].assign(sums.begin() + n_, sums.begin() + 2 * n_);
-    rooms_[1].assign(sums.begin() + 2 * n_, sums.end() - 1);
-    unassigned_ = sums.back();
-    share_.assign(n_, 0.0);
+    sum_over_ranks(domain_.grid.comm(), defect_, rooms_, unassigned_);
   }
   void find_spaces() {
     const TiledGrid<dim>& grid = domain_.grid;
     if (!space_of_body_.empty())
       return;
     spaces_ = find_closed_spaces(domain_, solids_);
-    // for each component its number of cells, and the sum of their spaces' numbers
-    std::vector<double> sums(2 * n_, 0.0);
+    // per component; `spaces`: the sum of the numbers of its cells' spaces
+    std::vector<double> n_cells(n_, 0.0), spaces(n_, 0.0);
     grid.for_each_owned_cell([&](int cell) {
       const int space = spaces_.of_cell[cell], body = body_[cell];
       if (body < 0 || space < 0)
         return;
-      sums[body] += 1;
-      sums[n_ + body] += space;
+      n_cells[body] += 1;
+      spaces[body] += space;
     });
-    sum_all(grid.comm(), sums.data(), 2 * n_);
+    sum_over_ranks(grid.comm(), n_cells, spaces);
     for (int body = 0; body < n_; ++body)
       space_of_body_.push_back(
-          static_cast<int>(std::lround(sums[n_ + body] / std::max(sums[body], 1.0))));
+          static_cast<int>(std::lround(spaces[body] / std::max(n_cells[body], 1.0))));
   }
   /// Shares defects beside no component among the components in the same closed space.
   void share_out() {
@@ -152,7 +147,7 @@ class Books {
       if (const int space = spaces_.of_cell[cell]; space >= 0 && body_[cell] < 0)
         defect_in_space_[space] += fractions_.defect[cell];
     });
-    sum_all(domain_.grid.comm(), defect_in_space_.data(), spaces_.n);
+    sum_over_ranks(domain_.grid.comm(), defect_in_space_);
     const auto room = [&](int body) { return rooms_[defect_in(body) > 0][body]; };
     std::vector<double> rooms(spaces_.n, 0.0);
     for (int body = 0; body < n_; ++body)
@@ -271,29 +266,29 @@ double leave_tiles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   if (sum_all(grid.comm(), n_leaving) == 0)
     return 0;
   const CellGroups& spaces = find_closed_spaces(domain, solids);
-  // the defect that each space takes, and the liquid there; the last: of no space
-  std::vector<double> sums(2 * (spaces.n + 1), 0.0);
+  // defect and liquid in each space; the last: in none
+  std::vector<double> taken(spaces.n + 1, 0.0), liquid(spaces.n + 1, 0.0);
   const auto takes = [&](int cell) {
     return !is_going(cell) && spaces.of_cell[cell] >= 0 && fractions.liquid[cell] > 0.5;
   };
   grid.for_each_owned_cell([&](int cell) {
     const int space = spaces.of_cell[cell] < 0 ? spaces.n : spaces.of_cell[cell];
     if (is_going(cell))
-      sums[2 * space] += liquid_in(cell) + fractions.defect[cell];
+      taken[space] += liquid_in(cell) + fractions.defect[cell];
     else if (takes(cell))
-      sums[2 * space + 1] += liquid_in(cell);
+      liquid[space] += liquid_in(cell);
   });
-  sum_all(grid.comm(), sums.data(), static_cast<int>(sums.size()));
+  sum_over_ranks(grid.comm(), taken, liquid);
   grid.for_each_owned_cell([&](int cell) {
     if (!takes(cell))
       return;
     const int space = spaces.of_cell[cell];
-    fractions.defect[cell] += sums[2 * space] * liquid_in(cell) / sums[2 * space + 1];
+    fractions.defect[cell] += taken[space] * liquid_in(cell) / liquid[space];
   });
   double lost = 0;
   for (int space = 0; space <= spaces.n; ++space)
-    if (sums[2 * space + 1] == 0)
-      lost += sums[2 * space];
+    if (liquid[space] == 0)
+      lost += taken[space];
   return lost;
 }
 

@@ -280,27 +280,17 @@ LiquidLedger VolumeOfFluid<dim>::ledger() const {
 }
 
 template <int dim>
-LiquidCells VolumeOfFluid<dim>::cells_with_liquid(const Surface& surface, KeptSurface<dim>&) {
-  find_solids(surface);
-  LiquidCells cells{std::vector<char>(phi_.size(), 0), std::vector<char>(phi_.size(), 0)};
-  for (std::size_t cell = 0; cell < phi_.size(); ++cell)
-    cells.seen[cell] =
-        solids_.is_fluid(static_cast<int>(cell)) && (phi_[cell] < 0 || fractions_.liquid[cell] > 0);
-  return cells;
-}
-
-template <int dim>
 WatchedLiquid VolumeOfFluid<dim>::liquid_in(const std::vector<char>& cells) const {
-  std::array<double, 2> sums{};
+  double liquid = 0, defect = 0;  // [cells]
   domain_.grid.for_each_owned_cell([&](int cell) {
     if (!cells[cell])
       return;
-    sums[0] += fractions_.liquid[cell] * fractions_.open_part(cell);
-    sums[1] += fractions_.defect[cell];
+    liquid += fractions_.liquid[cell] * fractions_.open_part(cell);
+    defect += fractions_.defect[cell];
   });
-  sum_all(domain_.grid.comm(), sums.data(), 2);
+  sum_over_ranks(domain_.grid.comm(), liquid, defect);
   const double cell = domain_.cell_volume();
-  return {sums[0] * cell, (sums[0] + sums[1]) * cell, 0};
+  return {liquid * cell, (liquid + defect) * cell};
 }
 
 template <int dim>

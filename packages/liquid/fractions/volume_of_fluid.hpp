@@ -42,7 +42,6 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   const CellField& distance() const override { return phi_; }
   int band(double largest_displacement) const override;
   LiquidLedger ledger() const override;
-  LiquidCells cells_with_liquid(const Surface& surface, KeptSurface<dim>& kept) override;
   WatchedLiquid liquid_in(const std::vector<char>& cells) const override;
 
   const Fractions& fractions() const { return fractions_; }

@@ -56,22 +56,20 @@ std::vector<char> GasBubbles<dim>::open_groups(const CellGroups& groups,
                                                const CellField& phi) const {
   const TiledGrid<dim>& grid = domain_.grid;
   const auto is_open_side = [](const auto& side) { return side.type == SideType::open; };
-  std::vector<double> n_open(groups.n, 0.0);
+  std::vector<char> is_open(groups.n, 0);
   grid.for_each_owned_cell([&](int cell) {
     if (groups.of_cell[cell] < 0)
       return;
-    n_open[groups.of_cell[cell]] +=
-        at_side(domain_, cell, is_open_side) ||
-        (parameters_.atmosphere.empty() && at_top(domain_, gravity_, cell));
+    if (at_side(domain_, cell, is_open_side) ||
+        (parameters_.atmosphere.empty() && at_top(domain_, gravity_, cell)))
+      is_open[groups.of_cell[cell]] = 1;
   });
   for (const Point<dim>& point : parameters_.atmosphere) {
     const int cell = grid.cell_containing(point);
     if (cell >= 0 && grid.owned(cell) && phi[cell] >= 0 && groups.of_cell[cell] >= 0)
-      n_open[groups.of_cell[cell]] += 1;
+      is_open[groups.of_cell[cell]] = 1;
   }
-  sum_all(grid.comm(), n_open.data(), groups.n);
-  std::vector<char> is_open(groups.n);
-  std::transform(n_open.begin(), n_open.end(), is_open.begin(), [](double n) { return n > 0; });
+  max_over_ranks(grid.comm(), is_open);
   return is_open;
 }
 
@@ -183,9 +181,8 @@ void GasBubbles<dim>::inherit(const CellField& phi) {
     const int to = of_cell_[cell] < 0 ? n : of_cell_[cell];
     went[from * (n + 1) + to] += std::clamp(0.5 + phi[cell] / domain_.spacing(), 0.0, 1.0);
   });
-  sum_all(grid.comm(), went.data(), static_cast<int>(went.size()));
-  for (double& value : before)
-    value = max_all(grid.comm(), value);
+  sum_over_ranks(grid.comm(), went);
+  max_over_ranks(grid.comm(), before);
 
   amounts_.assign(n, 0);
   std::vector<double> last(n, 0);

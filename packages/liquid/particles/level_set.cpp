@@ -290,17 +290,6 @@ void LevelSet<dim>::advance(const InterfaceStep<dim>& step) {
 }
 
 template <int dim>
-LiquidCells LevelSet<dim>::cells_with_liquid(const Surface& surface, KeptSurface<dim>& kept) {
-  find_solids(surface);
-  LiquidCells cells{std::vector<char>(phi_.size(), 0), std::vector<char>(phi_.size(), 0)};
-  for (std::size_t cell = 0; cell < phi_.size(); ++cell)
-    cells.seen[cell] = phi_[cell] < 0 && solids_.is_fluid(static_cast<int>(cell));
-  if (parameters_.particles)
-    add_cells_seen(-1, domain_, solids_, kept, phi_, particles_, cells.seen, cells.hidden);
-  return cells;
-}
-
-template <int dim>
 void LevelSet<dim>::settle() {
   domain_.full_halo.fill(phi_);
   continuation_.into_solids(domain_, solids_, cut_off(), phi_);

@@ -52,7 +52,6 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   const CellField& distance() const override { return phi_; }
   int band(double largest_displacement) const override;
   LiquidLedger ledger() const override { return volume_.state(); }
-  LiquidCells cells_with_liquid(const Surface& surface, KeptSurface<dim>& kept) override;
   Drops<dim>* drops() const override { return drops_.get(); }
   WatchedLiquid liquid_in(const std::vector<char>& cells) const override {
     return volume_.in_cells(phi_, cells);

@@ -111,39 +111,6 @@ void correct_by_particles(const MacDomain<dim>& domain, const SolidCells<dim>& s
 }
 
 template <int dim>
-void add_cells_seen(int side, const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                    KeptSurface<dim>& kept, const CellField& phi, const ParticleTiles<dim>& tiles,
-                    std::vector<char>& cells, std::vector<char>& hidden) {
-  const TiledGrid<dim>& grid = domain.grid;
-  const SampleLattice<dim> lattice(grid);
-  PhiLookup<dim> lookup(grid, lattice, solids, kept, phi);
-  for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
-    if (!tiles[tile].empty())
-      lookup.approach(static_cast<int>(tile));
-    for (const Particle<dim>& particle : tiles[tile]) {
-      if (particle.side() != side)
-        continue;
-      const Point<dim> x = particle.position(), place = lookup.place(x);
-      const bool may_be_hidden = lookup.may_be_hidden(x);
-      bool is_seen = false;
-      for (const StencilCorner<dim>& corner : lattice.corners(cell_centers, place)) {
-        if (corner.id < 0 || !solids.is_fluid(corner.id) ||
-            (may_be_hidden && lookup.hidden(x, x + (corner.position - place))))
-          continue;
-        cells[corner.id] = 1;
-        is_seen = true;
-      }
-      if (!is_seen)
-        hidden[tile * tile_volume<dim> + particle.cell_in_tile()] = 1;
-    }
-  }
-  domain.halo.sum_to_owner(cells);
-  for (char& cell : cells)
-    cell = cell != 0;
-  domain.halo.fill(cells);
-}
-
-template <int dim>
 void remove_trapped_air(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                         KeptSurface<dim>& kept, const CellField& phi, ParticleTiles<dim>& tiles) {
   if (!solids.state.surface)
@@ -188,12 +155,6 @@ template void correct_by_particles<2>(const MacDomain<2>&, const SolidCells<2>&,
                                       const ParticleTiles<2>&, CellField&);
 template void correct_by_particles<3>(const MacDomain<3>&, const SolidCells<3>&, KeptSurface<3>&,
                                       const ParticleTiles<3>&, CellField&);
-template void add_cells_seen<2>(int, const MacDomain<2>&, const SolidCells<2>&, KeptSurface<2>&,
-                                const CellField&, const ParticleTiles<2>&, std::vector<char>&,
-                                std::vector<char>&);
-template void add_cells_seen<3>(int, const MacDomain<3>&, const SolidCells<3>&, KeptSurface<3>&,
-                                const CellField&, const ParticleTiles<3>&, std::vector<char>&,
-                                std::vector<char>&);
 template void remove_trapped_air<2>(const MacDomain<2>&, const SolidCells<2>&, KeptSurface<2>&,
                                     const CellField&, ParticleTiles<2>&);
 template void remove_trapped_air<3>(const MacDomain<3>&, const SolidCells<3>&, KeptSurface<3>&,

@@ -12,14 +12,6 @@ template <int dim>
 void correct_by_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                           KeptSurface<dim>& kept, const ParticleTiles<dim>& tiles, CellField& phi);
 
-/// Marks with 1 the cells around particles of a side (-1: of the liquid) that see them: those
-/// owned, and the halo of width 1; and as hidden the owned ones that hold a particle which none of
-/// the centres around sees. `phi` on that halo. Collective.
-template <int dim>
-void add_cells_seen(int side, const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                    KeptSurface<dim>& kept, const CellField& phi, const ParticleTiles<dim>& tiles,
-                    std::vector<char>& cells, std::vector<char>& hidden);
-
 /// Takes out the particles of air that a solid and liquid enclose: of the centres around, one at
 /// least does not see them or lies in a solid, and those that do are all wet. No cell could hold
 /// that air, and yet it would keep phi near zero around it, and follow the solid for good. `phi` on

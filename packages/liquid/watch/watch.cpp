@@ -25,7 +25,7 @@ void declare_watches(ParameterList& free_surface) {
   declare_named_sublists(
       free_surface, "Watch",
       "Places whose liquid history.csv shows: all that can be reached from a point, through liquid "
-      "and air but not through solids. If liquid comes there through a solid the run ends.",
+      "and air but not through solids.",
       watch);
 }
 

@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// A place whose liquid is measured, and into which liquid may come on open ways only.
+/// A place whose liquid is measured.
 template <int dim>
 struct Watch {
   std::string name;  ///< as columns have it

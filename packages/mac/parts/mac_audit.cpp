@@ -83,7 +83,7 @@ std::vector<double> MacEnergy<dim>::works() {
       for (std::size_t k = 0; k < all.size(); ++k)
         all[k] += momentum * (stages_[k + 1][axis][face] - stages_[k][axis][face]);
     });
-  sum_all(flow_.domain.grid.comm(), all.data(), static_cast<int>(all.size()));
+  sum_over_ranks(flow_.domain.grid.comm(), all);
   stages_.clear();
   return all;
 }

@@ -25,7 +25,7 @@ std::vector<double> MacGas<dim>::sum_of_bubbles(const Value& value) const {
   std::vector<double> sums(gas_bubbles().size(), 0);
   for (const GasFace& face : faces_)
     sums[face.bubble] += value(face);
-  sum_all(flow_.domain.grid.comm(), sums.data(), static_cast<int>(sums.size()));
+  sum_over_ranks(flow_.domain.grid.comm(), sums);
   return sums;
 }
 

@@ -17,20 +17,15 @@ std::vector<double> MacLiquid<dim>::surface_distances(const std::vector<Point<di
   const CellField& phi = liquid_.interface().distance();
   constexpr double nothing_stored = 1e300;
   const std::size_t n = points.size();
-  std::vector<double> values(2 * n, 0.0);  // distances; how many ranks know
+  std::vector<double> values(n, nothing_stored);
   for (std::size_t p = 0; p < n; ++p) {
     const auto [cell, x] = place_of<dim>(grid, points[p]);
     if (cell < 0 || !grid.owned(cell))
       continue;
     const auto stencil = lattice.locate(cell_centers, x);
     values[p] = stencil.complete() ? interpolate<dim>(stencil, phi.data()) : phi[cell];
-    values[n + p] = 1;
   }
-  sum_all(grid.comm(), values.data(), static_cast<int>(values.size()));
-  for (std::size_t p = 0; p < n; ++p)
-    if (values[n + p] == 0)
-      values[p] = nothing_stored;
-  values.resize(n);
+  min_over_ranks(grid.comm(), values);
   return values;
 }
 

@@ -27,34 +27,25 @@ std::vector<FluidSample<dim>> MacOutput<dim>::sample(const std::vector<Point<dim
   const SampleLattice<dim> lattice(grid);
   const GridState<dim>& state = flow_.geometry.state;
   const bool has_pressure = flow_.last_step > 0;
-  constexpr int n_values = dim + 2;
   // Each rank answers for its own cells; the sum is everybody's answer.
-  std::vector<double> values(points.size() * n_values, 0.);
+  std::vector<FluidSample<dim>> samples(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto [cell, x] = place_of<dim>(grid, points[p]);
     if (cell < 0 || !grid.owned(cell) || state.cells[cell] != CellState::fluid ||
         (state.surface && state.surface->inside(grid.wrap(points[p])) >= 0))
       continue;
-    double* value = &values[p * n_values];
-    *value++ = 1;
+    samples[p].in_fluid = true;
     if (has_pressure)
-      *value = mean_of<dim>(lattice, cell_centers, x, flow_.scaled_pressure,
-                            [&](int id) { return state.cells[id] == CellState::fluid; }) /
-               flow_.last_step;
-    ++value;
+      samples[p].pressure =
+          mean_of<dim>(lattice, cell_centers, x, flow_.scaled_pressure,
+                       [&](int id) { return state.cells[id] == CellState::fluid; }) /
+          flow_.last_step;
     for (int axis = 0; axis < dim; ++axis)
-      *value++ = mean_of<dim>(lattice, axis, x, flow_.prediction[axis],
-                              [&](int id) { return is_wet(state.faces[axis][id]); });
+      samples[p].velocity[axis] =
+          mean_of<dim>(lattice, axis, x, flow_.prediction[axis],
+                       [&](int id) { return is_wet(state.faces[axis][id]); });
   }
-  sum_all(flow_.domain.grid.comm(), values.data(), static_cast<int>(values.size()));
-  std::vector<FluidSample<dim>> samples(points.size());
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    const double* value = &values[p * n_values];
-    samples[p].in_fluid = value[0] > 0;
-    samples[p].pressure = value[1];
-    for (int axis = 0; axis < dim; ++axis)
-      samples[p].velocity[axis] = value[2 + axis];
-  }
+  sum_over_ranks(flow_.domain.grid.comm(), samples);
   return samples;
 }
 
@@ -71,8 +62,7 @@ std::vector<FlowSample> MacOutput<dim>::flow_across(int axis,
     const FaceCells beside = cells_of_face(grid, cells, axis, face);
     return beside.lower >= 0 || beside.upper >= 0;
   };
-  constexpr int n_values = 3;
-  std::vector<double> values(points.size() * n_values, 0.);
+  std::vector<FlowSample> samples(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto [cell, x] = place_of<dim>(grid, points[p]);
     if (cell < 0 || !grid.owned(cell) || !is_fluid(cell))
@@ -89,17 +79,13 @@ std::vector<FlowSample> MacOutput<dim>::flow_across(int axis,
     }
     if (open == 0)
       continue;
-    double* value = &values[p * n_values];
-    value[0] = open / weight;
-    value[1] = rate / weight;
+    samples[p].open = open / weight;
+    samples[p].rate = rate / weight;
     if (flow_.last_step > 0)
-      value[2] =
+      samples[p].pressure =
           mean_of<dim>(lattice, cell_centers, x, flow_.scaled_pressure, is_fluid) / flow_.last_step;
   }
-  sum_all(grid.comm(), values.data(), static_cast<int>(values.size()));
-  std::vector<FlowSample> samples;
-  for (std::size_t p = 0; p < points.size(); ++p)
-    samples.push_back({values[3 * p], values[3 * p + 1], values[3 * p + 2]});
+  sum_over_ranks(grid.comm(), samples);
   return samples;
 }
 

@@ -216,8 +216,6 @@ void MacTiles<dim>::regrid(const TileOwners& owners) {
   flow_.domain.set_grid(std::move(grid));
   if (finish_liquid)
     finish_liquid();
-  if (flow_.liquid)
-    flow_.liquid->forget();
   flow_.blocks = lattice_blocks(flow_.domain.grid);
   owners_ = owners;
   has_room_ = true;

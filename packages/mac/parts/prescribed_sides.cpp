@@ -55,7 +55,8 @@ std::vector<std::pair<std::string, std::string>> notes_of_inflows(
                                      length / domain.spacing(), side.wave->speed()));
       return;
     }
-    double sums[3] = {0, 0, 0};  // open area, faces, faces in part
+    double open_area = 0;
+    int n_open = 0, n_partial = 0;  // faces
     InflowShape<dim> opening = side.shape;
     opening.parabolic = false;
     for (const auto& [face_axis, cell] : geometry.prescribed) {
@@ -63,16 +64,16 @@ std::vector<std::pair<std::string, std::string>> notes_of_inflows(
       if (face_axis != axis || is_upper != (end == 1))
         continue;
       const double open = opening.mean_factor(axis, domain.face_box(axis, cell));
-      sums[0] += open * geometry.face_table.area();
-      sums[1] += open > 0;
-      sums[2] += open > 0 && open < 1;
+      open_area += open * geometry.face_table.area();
+      n_open += open > 0;
+      n_partial += open > 0 && open < 1;
     }
-    sum_all(domain.grid.comm(), sums, 3);
+    sum_over_ranks(domain.grid.comm(), open_area, n_open, n_partial);
     notes.emplace_back(
         "inflow " + side_name(axis, end),
-        fmt::format("{:.6g} m^{}/s through {:.6g} m^{}: {:.0f} faces, {:.0f} of them in part",
-                    std::abs(side.velocity[axis]) * sums[0], dim, sums[0], dim - 1, sums[1],
-                    sums[2]));
+        fmt::format("{:.6g} m^{}/s through {:.6g} m^{}: {} faces, {} of them in part",
+                    std::abs(side.velocity[axis]) * open_area, dim, open_area, dim - 1, n_open,
+                    n_partial));
   });
   return notes;
 }

@@ -48,7 +48,7 @@ void share_open_fractions(const MacDomain<dim>& domain, MacGeometry<dim>& geomet
     n_partial[volume.direction] += volume.open_fraction > 0;
   for (const auto& [axis, cell] : geometry.prescribed)
     n_partial[axis] += geometry.face_table(axis, cell).open < 1;
-  sum_all(grid.comm(), n_partial.data(), dim);
+  sum_over_ranks(grid.comm(), n_partial);
   for (int axis = 0; axis < dim; ++axis) {
     if (n_partial[axis] == 0)
       continue;

@@ -28,8 +28,7 @@ std::vector<int> pinned_rows(const NullSpace& space, const RCP<const Map>& map) 
     for (int row = run.begin; row < run.end; ++row)
       lowest[run.region] = std::min(lowest[run.region], map->getGlobalElement(row));
   }
-  MPI_Allreduce(MPI_IN_PLACE, lowest.data(), static_cast<int>(lowest.size()), MPI_LONG_LONG,
-                MPI_MIN, raw_communicator(map->getComm()));
+  min_over_ranks(map->getComm(), lowest);
   std::vector<int> rows;
   for (const auto& parts : space.vectors()) {
     double largest = 0;

@@ -30,7 +30,7 @@ Eigen::VectorXd replicated(const Vector& vector) {
   const auto mine = vector.getData();
   for (int row = 0; row < static_cast<int>(mine.size()); ++row)
     values[map->getGlobalElement(row)] = mine[row];
-  sum_all(map->getComm(), values.data(), static_cast<int>(values.size()));
+  sum_over_ranks(map->getComm(), values);
   return values;
 }
 

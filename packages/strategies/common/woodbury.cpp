@@ -68,7 +68,7 @@ class Woodbury {
       products[dof] =
           here.dot(Eigen::Map<const Eigen::VectorXd>(column.getRawPtr(), column.size()));
     }
-    sum_all(r.getMap()->getComm(), products.data(), static_cast<int>(products.size()));
+    sum_over_ranks(r.getMap()->getComm(), products);
     return products;
   }
 

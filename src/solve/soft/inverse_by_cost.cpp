@@ -95,7 +95,7 @@ NearNullSpace restricted(const NearNullSpace& all, const MatrixPart& part) {
     if (all.body_of_row[row] >= 0)
       is_inside[all.body_of_row[row]] = 1;
   }
-  sum_all(part.map()->getComm(), is_inside.data(), all.n_bodies);
+  sum_over_ranks(part.map()->getComm(), is_inside);
   std::vector<int> number(all.n_bodies, -1);
   for (int b = 0; b < all.n_bodies; ++b) {
     if (is_inside[b] > 0)

@@ -64,7 +64,7 @@ class DeflatedMotions {
       for (std::size_t row = 0; row < bodies_.size(); ++row)
         sums[bodies_[row] * n_motions_ + j] += motion[row] * values[row];
     }
-    sum_all(x.getMap()->getComm(), sums.data(), static_cast<int>(sums.size()));
+    sum_over_ranks(x.getMap()->getComm(), sums);
     return sums;
   }
 

@@ -168,10 +168,9 @@ void add_watch(Columns<HistoryRow<dim>>& columns, const std::string& name, std::
                          return watches[number].*value;
                        }});
   };
-  add("_volume", "of liquid in this watched place; nan, as the next two, while it is not watched",
+  add("_volume", "of liquid in this watched place; nan, as the next, while it is not watched",
       &WatchedLiquid::volume);
   add("_volume_target", "what it should be", &WatchedLiquid::target);
-  add("_leak", "of it what came through solids: 0, or the run ends", &WatchedLiquid::leak);
 }
 
 template <int dim>

@@ -146,14 +146,14 @@ void StepEnergy<dim>::add_lumping(const CoupledSolution& solution) {
   const std::vector<double>& pushed = solution.coupled_before;
   const std::vector<double> before = coupling.velocity(*velocity_),
                             after = coupling.velocity(*solution.velocity);
-  double sums[2] = {0, 0};
+  double lumping = 0, loads = 0;
   for (std::size_t f = 0; f < mass.size(); ++f) {
-    sums[0] += 0.5 * mass[f] * (pushed[f] - before[f]) * (pushed[f] - after[f]);
-    sums[1] += 0.5 * mass[f] * (pushed[f] * pushed[f] - coupled_before_[f] * coupled_before_[f]);
+    lumping += 0.5 * mass[f] * (pushed[f] - before[f]) * (pushed[f] - after[f]);
+    loads += 0.5 * mass[f] * (pushed[f] * pushed[f] - coupled_before_[f] * coupled_before_[f]);
   }
-  sum_all(components_.solids->comm(), sums, 2);
-  book_.lumping += sums[0];
-  book_.loads += sums[1];
+  sum_over_ranks(components_.solids->comm(), lumping, loads);
+  book_.lumping += lumping;
+  book_.loads += loads;
 }
 
 template <int dim>

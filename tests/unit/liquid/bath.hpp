@@ -120,7 +120,7 @@ struct Bath {
         sum[1] += (wet != (exact(x) < 0)) * std::pow(h / n, dim);
       }
     });
-    sum_all(domain.grid.comm(), sum.data(), 2);
+    sum_over_ranks(domain.grid.comm(), sum);
     return {sum[0], sum[1]};
   }
 

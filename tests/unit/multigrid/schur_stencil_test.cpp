@@ -33,7 +33,7 @@ std::vector<ClosedFace> closed_faces(const FaceCoefficients& a) {
     if (a.row[cell] >= 0)
       row_of_cell[number(cells[cell])] = 1. + a.map->getGlobalElement(a.row[cell]);
   }
-  sum_all(a.map->getComm(), row_of_cell.data(), static_cast<int>(row_of_cell.size()));
+  sum_over_ranks(a.map->getComm(), row_of_cell);
   std::vector<ClosedFace> faces;
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     if (a.row[cell] < 0 || cells[cell][0] == 0 || a.lower[0][cell] != 0)

@@ -67,8 +67,8 @@ LiquidReport next_liquid(double& number) {
   liquid.n_bodies = static_cast<long long>(++number);
   for (int w = 0; w < 2; ++w) {
     const double first = number;
-    liquid.watches.push_back({first + 1, first + 2, first + 3});
-    number += 3;
+    liquid.watches.push_back({first + 1, first + 2});
+    number += 2;
   }
   const double first = number;
   liquid.gas = {static_cast<long long>(first + 1), first + 2, first + 3};
@@ -187,10 +187,8 @@ void expect_liquid(Texts& texts, const LiquidReport& liquid) {
       {"liquid_bodies", double(liquid.n_bodies)},
       {"watch_Cup_volume", liquid.watches[0].volume},
       {"watch_Cup_volume_target", liquid.watches[0].target},
-      {"watch_Cup_leak", liquid.watches[0].leak},
       {"watch_Bowl_volume", liquid.watches[1].volume},
       {"watch_Bowl_volume_target", liquid.watches[1].target},
-      {"watch_Bowl_leak", liquid.watches[1].leak},
       {"gas_bubbles", double(liquid.gas->n_bubbles)},
       {"gas_volume", liquid.gas->volume},
       {"gas_pressure", liquid.gas->pressure},
@@ -247,10 +245,10 @@ TYPED_TEST(RunTablesOf, APlaceThatIsNotWatchedIsNan) {
   RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
   tables.start();
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  this->report.liquid->watches[1] = {unknown, unknown, unknown};
+  this->report.liquid->watches[1] = {unknown, unknown};
   tables.append(7, this->report, {}, 0.5);
   const std::vector<Texts> rows = this->rows("history.csv");
-  for (const char* name : {"watch_Bowl_volume", "watch_Bowl_volume_target", "watch_Bowl_leak"})
+  for (const char* name : {"watch_Bowl_volume", "watch_Bowl_volume_target"})
     EXPECT_EQ(rows.at(0).at(name), "nan");
 }
 

@@ -254,7 +254,7 @@ TEST(Transport, SlowInflowEnters) {
       EXPECT_LE(s[c], 3 + 1e-12);
       EXPECT_GE(s[c], -1e-12);
     });
-    sum_all(world(), entered.data(), 2);
+    sum_over_ranks(world(), entered);
     EXPECT_NEAR(entered[0], 10, 0.6);
     EXPECT_NEAR(entered[1], 10, 0.6);
   }
