@@ -12,11 +12,20 @@ struct CoupledSolveOptions {
   int newton_iterations = 1;  ///< solves with implicit forces linearised anew
 };
 
+/// A coupled solve with its contacts.
+template <int dim>
+struct HeldSolve {
+  CoupledSolution solution;
+  ContactReport<dim> contact;
+  int n_solves = 0;
+  double residual = 0;  ///< velocity at contacts by which solve and contact model differ [m/s]
+};
+
 /// The velocities at the end of a step.
 template <int dim>
 struct EndOfStep {
   CoupledSolution solution;
-  ContactReport<dim> contact;  ///< on V_S*, before the pressure
+  ContactReport<dim> contact;
 };
 
 /// Finds p̂ and V of Eq. 16 at frozen geometry, with implicit forces of solids, gas and contact.
@@ -39,9 +48,16 @@ class CoupledSolve {
   /// linearisation. Collective.
   CoupledSolution converge(const StepContext<dim>& context, const RCP<Vector>& momentum,
                            const BlockVector* nearby = nullptr);
-  /// The end of the step: contact acts on V_S*, then the pressure is found. `drag`: viscous impulse
-  /// on the solids; null: none. Throws SolveError if what is prescribed has no solution, but for
-  /// what the grid makes of the solids' shapes. Collective.
+  /// True if contacts are part of the coupled solve: those of rigid bodies without joints. Those of
+  /// soft solids and of mechanisms act on V_S* alone. The same on all ranks.
+  bool holds_contacts() const;
+  /// Solves for velocities that keep contacts (docs/method.md, "Contact in the coupled system"):
+  /// held as rows of C, for which the contact model decides. Collective.
+  HeldSolve<dim> solve_with_contacts(const StepContext<dim>& context,
+                                     const RCP<const Vector>& momentum);
+  /// The end of the step. `drag`: viscous impulse on the solids; null: none. Throws SolveError if
+  /// what is prescribed has no solution, but for what the grid makes of the solids' shapes.
+  /// Collective.
   EndOfStep<dim> velocities(const StepContext<dim>& context, const SolidMomentum<dim>& solids,
                             const RCP<const Vector>& drag);
   /// u* -= M^-1 G p, and u*_F = W V; `viscous_pressure`: what the pressure for the next step has
@@ -54,7 +70,8 @@ class CoupledSolve {
 
  private:
   bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution);
-  ContactReport<dim> hold_contacts(const StepContext<dim>& context, Vector& momentum);
+  ContactReport<dim> contact_before_solve(const StepContext<dim>& context, Vector& momentum);
+  RCP<Vector> impulse_at_rest(double dt) const;
 
   Components<dim>& components_;
   CoupledSystem<dim>& system_;
