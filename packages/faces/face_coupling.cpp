@@ -190,7 +190,9 @@ RCP<const CrsMatrix> FaceCoupling<dim>::mass_with_fluid(const SolidSystem<dim>& 
     return added_mass_;
   const RCP<const CrsMatrix> of_balls = assemble_triplets(
       added_mass_of_balls<dim>(displaced_masses_, solids, *surface_), solids.map(), solids.map());
-  return added_mass_.is_null() ? of_balls : sum_of({{added_mass_}, {of_balls}}, solids.map());
+  if (added_mass_.is_null())
+    return of_balls;
+  return sum_of({{added_mass_}, {of_balls}}, solids.map());
 }
 
 template <int dim>

@@ -27,7 +27,7 @@ HydrostaticLoads<dim>::HydrostaticLoads(const FluidDiscretization<dim>& fluid,
     const SolidDescription& solid = surface.solids()[s];
     if ((!solid.closed && !solid.rigid) || (has_level_ && !levels[s].known))
       continue;
-    if (solid.closed && has_level_ && levels[s].pierces && !levels[s].is_in_sight)
+    if (solid.closed && has_level_ && !levels[s].is_wet)
       continue;  // it is in the air
     RestPressure<dim>& pressure = pressures_[s];
     pressure.pierces = has_level_ && levels[s].pierces;

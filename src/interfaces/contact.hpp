@@ -16,10 +16,11 @@ class SolidSystem;
 /// `velocity`. A coupled solve holds it.
 struct HeldRow {
   std::vector<std::pair<GlobalIndex, double>>
-      weights;          ///< by dof of the stack; the same on all ranks
-  double velocity = 0;  ///< [m/s]
-  double impulse = 0;   ///< that the contact model finds for it [kg m/s]
-  double response = 0;  ///< velocity per impulse in the model's response [1/kg]
+      weights;           ///< by dof of the stack; the same on all ranks
+  double velocity = 0;   ///< [m/s]
+  double impulse = 0;    ///< that the contact model finds for it [kg m/s]
+  double response = 0;   ///< velocity per impulse in the model's response [1/kg]
+  bool is_stiff = true;  ///< false: the solve is given its impulse and does not hold it
 };
 
 /// Result of one resolution of contacts.
@@ -27,6 +28,8 @@ template <int dim>
 struct ContactReport {
   int n_contacts = 0;  ///< number of contacts and joint limits
   int iterations = 0;
+  int n_solves = 0;     ///< coupled solves that held them; 0: they are not part of it
+  double residual = 0;  ///< velocity at contacts that the last of these solves has left [m/s]
   int n_crossings = 0;  ///< crossings of surfaces that are not rigid, which could not be prevented
   double deepest_overlap = 0;      ///< before resolution; 0 where nothing is resolved [m]
   Momentum<dim> external_impulse;  ///< from walls and prescribed solids on the dynamic ones, global

@@ -4,6 +4,7 @@
 #include "contact/impulses/limit_impulses.hpp"
 #include "contact/impulses/mobility.hpp"
 #include "contact/search/contact_search.hpp"
+#include "interfaces/contact.hpp"
 
 namespace lockstep {
 

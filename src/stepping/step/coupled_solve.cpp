@@ -142,16 +142,16 @@ ContactReport<dim> CoupledSolve<dim>::contact_before_solve(const StepContext<dim
 }
 
 template <int dim>
-EndOfStep<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& context,
-                                             const SolidMomentum<dim>& solids,
-                                             const RCP<const Vector>& drag) {
+MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& context,
+                                                      const SolidMomentum<dim>& solids,
+                                                      const RCP<const Vector>& drag) {
   constexpr double round_off = 1e-9;
   const auto momentum = rcp(new Vector(*solids.momentum, Teuchos::Copy));
-  EndOfStep<dim> end;
+  MotionWithContacts<dim> end;
   if (holds_contacts()) {
     if (!drag.is_null())
       momentum->update(1, *drag, 1);
-    HeldSolve<dim> held = solve_with_contacts(context, momentum);
+    MotionWithContacts<dim> held = solve_with_contacts(context, momentum);
     end.solution = held.solution;
     end.contact = held.contact;
   } else {
@@ -184,7 +184,7 @@ void CoupledSolve<dim>::project(const CoupledSolution& solution,
 }
 
 template <int dim>
-void CoupledSolve<dim>::accept(const StepContext<dim>& context, const EndOfStep<dim>& end,
+void CoupledSolve<dim>::accept(const StepContext<dim>& context, const MotionWithContacts<dim>& end,
                                const RCP<const Vector>& reactions) {
   auto& solids = *components_.solids;
   components_.fluid->accept();

@@ -64,7 +64,7 @@ void PositionUpdate<dim>::solve(const StepContext<dim>& context, const RCP<const
   if (!drag.is_null())
     momentum->update(1, *drag, 1);
   if (solve_.holds_contacts()) {
-    HeldSolve<dim> held = solve_.solve_with_contacts(context, momentum);
+    MotionWithContacts<dim> held = solve_.solve_with_contacts(context, momentum);
     found.solution = held.solution;
     found.path.contact = held.contact;
   } else {
