@@ -135,6 +135,8 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
     const auto free = rcp(new Vector(*impulse, Teuchos::Copy));
     solids.reduction().drop_given(*free);
     report.impulse = free;
+    report.held = solver.held_rows();
+    report.sliding = solver.sliding_impulse();
   }
   std::vector<double> resolved = solver.velocity();
   if (phase == ContactPhase::position) {

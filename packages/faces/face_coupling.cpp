@@ -5,6 +5,7 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 
+#include "linear/matrix_sum.hpp"
 #include "linear/overlap.hpp"
 #include "linear/triplet_matrix.hpp"
 
@@ -22,6 +23,7 @@ void FaceCoupling<dim>::take_volumes(const FluidDiscretization<dim>& fluid,
   closed_area_.clear();
   loads_at_rest_.clear();
   load_corrections_.clear();
+  displaced_masses_.clear();
   std::vector<GlobalIndex> unknowns;
   for (const ControlVolume<dim>& volume : volumes_) {
     closed_area_.push_back(closed_area(volume));
@@ -164,6 +166,7 @@ void FaceCoupling<dim>::find_hydrostatic_loads(
   solids_ = &solids;
   loads_at_rest_ = loads.on_grid();
   load_corrections_ = loads.corrections();
+  displaced_masses_ = loads.displaced_masses();
 }
 
 template <int dim>
@@ -179,6 +182,17 @@ template <int dim>
 void FaceCoupling<dim>::add_impulse_at_rest(double dt, Vector& momentum) const {
   if (!loads_at_rest_.empty())
     add_loads<dim>(loads_at_rest_, *solids_, *surface_, dt, momentum);
+}
+
+template <int dim>
+RCP<const CrsMatrix> FaceCoupling<dim>::mass_with_fluid(const SolidSystem<dim>& solids) const {
+  if (displaced_masses_.empty())
+    return added_mass_;
+  const RCP<const CrsMatrix> of_balls = assemble_triplets(
+      added_mass_of_balls<dim>(displaced_masses_, solids, *surface_), solids.map(), solids.map());
+  if (added_mass_.is_null())
+    return of_balls;
+  return sum_of({{added_mass_}, {of_balls}}, solids.map());
 }
 
 template <int dim>

@@ -35,6 +35,7 @@ class FaceCoupling : public Coupling<dim>,
                                       bool with_prescribed) const override;
   std::vector<Momentum<dim>> add_hydrostatic_force(double dt, Vector& momentum) const override;
   void add_impulse_at_rest(double dt, Vector& momentum) const override;
+  RCP<const CrsMatrix> mass_with_fluid(const SolidSystem<dim>& solids) const override;
 
  protected:
   /// Starts anew with the fluid's coupled volumes: no solids, masses, velocities and hydrostatic
@@ -82,6 +83,7 @@ class FaceCoupling : public Coupling<dim>,
   std::vector<double> closed_area_;
   const SolidSystem<dim>* solids_ = nullptr;  ///< solids of the last `find_hydrostatic_loads`
   std::vector<AxisLoad<dim>> loads_at_rest_, load_corrections_;
+  std::vector<DisplacedMass<dim>> displaced_masses_;
 };
 
 /// rhs += weights^T momentum, one value a row; `import` brings the dofs of the weights. Collective.

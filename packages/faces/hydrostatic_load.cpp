@@ -27,7 +27,7 @@ HydrostaticLoads<dim>::HydrostaticLoads(const FluidDiscretization<dim>& fluid,
     const SolidDescription& solid = surface.solids()[s];
     if ((!solid.closed && !solid.rigid) || (has_level_ && !levels[s].known))
       continue;
-    if (solid.closed && has_level_ && levels[s].pierces && !levels[s].is_in_sight)
+    if (solid.closed && has_level_ && !levels[s].is_wet)
       continue;  // it is in the air
     RestPressure<dim>& pressure = pressures_[s];
     pressure.pierces = has_level_ && levels[s].pierces;
@@ -150,6 +150,45 @@ std::vector<AxisLoad<dim>> HydrostaticLoads<dim>::corrections() const {
   return loads;
 }
 
+template <int dim>
+std::vector<DisplacedMass<dim>> HydrostaticLoads<dim>::displaced_masses() const {
+  std::vector<DisplacedMass<dim>> masses;
+  for (int s = 0; s < static_cast<int>(volumes_.size()); ++s)
+    if (volumes_[s] > 0)
+      masses.push_back({s, density_ * volumes_[s], centers_[s]});
+  return masses;
+}
+
+template <int dim>
+std::vector<Triplet> added_mass_of_balls(const std::vector<DisplacedMass<dim>>& displaced,
+                                         const SolidSystem<dim>& solids,
+                                         const SurfaceSnapshot<dim>& surface) {
+  constexpr double of_displaced = dim == 2 ? 1 : 0.5;  // potential flow
+  std::vector<Triplet> triplets;
+  VelocityRow<dim> row;
+  for (const DisplacedMass<dim>& one : displaced) {
+    const SolidDescription& solid = surface.solids()[one.solid];
+    if (solid.prescribed || !solid.rigid)
+      continue;
+    SurfacePoint<dim> point;
+    point.simplex = solid.simplex_begin;
+    solids.velocity_row(point, one.center, row);
+    for (std::size_t i = 0; i < row.dofs.size(); ++i)
+      for (std::size_t j = 0; j < row.dofs.size() && solids.map()->isNodeGlobalElement(row.dofs[i]);
+           ++j)
+        triplets.push_back(
+            {row.dofs[i], row.dofs[j],
+             of_displaced * one.mass * row.coefficients[i].dot(row.coefficients[j])});
+  }
+  return triplets;
+}
+
+template std::vector<Triplet> added_mass_of_balls<2>(const std::vector<DisplacedMass<2>>&,
+                                                     const SolidSystem<2>&,
+                                                     const SurfaceSnapshot<2>&);
+template std::vector<Triplet> added_mass_of_balls<3>(const std::vector<DisplacedMass<3>>&,
+                                                     const SolidSystem<3>&,
+                                                     const SurfaceSnapshot<3>&);
 template class HydrostaticLoads<2>;
 template class HydrostaticLoads<3>;
 

@@ -4,6 +4,7 @@
 
 #include "faces/axis_load.hpp"
 #include "interfaces/liquid.hpp"
+#include "linear/triplet_matrix.hpp"
 
 namespace lockstep {
 
@@ -20,6 +21,21 @@ struct RestPressure {
     return pierces ? std::max(0., pressure) : pressure;
   }
 };
+
+/// The fluid that a closed solid displaces.
+template <int dim>
+struct DisplacedMass {
+  int solid = -1;
+  double mass = 0;                         ///< [kg]
+  Point<dim> center = Point<dim>::Zero();  ///< [m]
+};
+
+/// The added mass of a disc (2D) or ball (3D) of each displaced volume, at its centre, on the dofs
+/// of rigid solids that are not prescribed. Local.
+template <int dim>
+std::vector<Triplet> added_mass_of_balls(const std::vector<DisplacedMass<dim>>& displaced,
+                                         const SolidSystem<dim>& solids,
+                                         const SurfaceSnapshot<dim>& surface);
 
 /// The force of the fluid at rest on closed solids, by axis: F_h, exact for their polyhedra up to
 /// the level of the water around them, and what a solve on the grid makes of it, which is
@@ -46,6 +62,7 @@ class HydrostaticLoads {
   /// F_h + B^T p_h - W^T M_F g of closed solids, along the axes on which the grid sees both their
   /// ends. Local.
   std::vector<AxisLoad<dim>> corrections() const;
+  std::vector<DisplacedMass<dim>> displaced_masses() const;  ///< of closed solids. Local.
 
  private:
   struct Sum {

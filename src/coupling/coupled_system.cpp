@@ -6,6 +6,7 @@
 #include "coupling/impossible_flow.hpp"
 #include "coupling/null_space.hpp"
 #include "linear/matrix_rows.hpp"
+#include "linear/matrix_sum.hpp"
 #include "linear/null_space.hpp"
 
 namespace lockstep {
@@ -30,6 +31,7 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   const NullSpaces null_spaces =
       find_null_spaces(fluid_.regions(), fluid_.pressure_map(), coupling_transposed_);
 
+  held_stiffness_ = Teuchos::null;
   ++blocks_.geometry_version;
   ++blocks_.solids.version;
   blocks_.set_blocks(fluid_.pressure_block());
@@ -42,16 +44,34 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   pressure_only_.null_space = null_spaces.pressure;
 }
 
+namespace {
+/// The sum of two matrices of the stack, either of which may be null.
+RCP<const CrsMatrix> sum_of_both(const RCP<const CrsMatrix>& one,
+                                 const RCP<const CrsMatrix>& other) {
+  if (one.is_null() || other.is_null())
+    return one.is_null() ? other : one;
+  return sum_of({{one}, {other}}, one->getRowMap());
+}
+}  // namespace
+
+template <int dim>
+void CoupledSystem<dim>::hold(const RCP<const CrsMatrix>& stiffness) {
+  is_held_anew_ = is_held_anew_ || !stiffness.is_null() || !held_stiffness_.is_null();
+  held_stiffness_ = stiffness;
+}
+
 template <int dim>
 const BlockSystem& CoupledSystem<dim>::blocks(double dt, bool with_solid) {
   if (!with_solid || !solids_.has_unknowns())
     return pressure_only_;
   const unsigned linearisation = solids_.linearisation_number();
   const bool is_present = dt == block_dt_ && linearisation == block_linearisation_;
-  if (!blocks_.has_solid() || (solid_depends_on_dt_ && !is_present)) {
-    blocks_.set_blocks(blocks_.pressure_block(), coupling_transposed_,
-                       solids_.solid_block(coupling_.added_mass(), dt));
+  if (!blocks_.has_solid() || (solid_depends_on_dt_ && !is_present) || is_held_anew_) {
+    blocks_.set_blocks(
+        blocks_.pressure_block(), coupling_transposed_,
+        solids_.solid_block(sum_of_both(coupling_.added_mass(), held_stiffness_), dt));
     ++blocks_.solids.version;
+    is_held_anew_ = false;
     block_dt_ = dt;
     block_linearisation_ = linearisation;
   }

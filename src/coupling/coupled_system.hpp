@@ -25,6 +25,9 @@ class CoupledSystem {
   /// The operators for a step of dt (C = M̃_S - dt D); with `with_solid` false A alone, for F2.
   /// Collective.
   const BlockSystem& blocks(double dt, bool with_solid = true);
+  /// C gets J^T K J besides, of contacts that it holds, until the next call or `freeze`; null:
+  /// nothing. Collective.
+  void hold(const RCP<const CrsMatrix>& stiffness);
 
   /// Row 1: V G_f^T u* + V G_d^T u_d + V G_c^T W_k V_k + B b; row 2: P^T (`momentum` + W^T M_F
   /// (u*_F
@@ -69,6 +72,8 @@ class CoupledSystem {
   double block_dt_ = 0;               ///< the dt of C in `blocks_`
   unsigned block_linearisation_ = 0;  ///< linearisation number of D in `blocks_`, see SolidSystem
   bool solid_depends_on_dt_ = false;
+  RCP<const CrsMatrix> held_stiffness_;  ///< J^T K J in the C of `blocks_`; null: none
+  bool is_held_anew_ = false;            ///< not yet in C
 };
 
 }  // namespace lockstep

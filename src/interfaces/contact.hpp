@@ -12,11 +12,24 @@ namespace lockstep {
 template <int dim>
 class SolidSystem;
 
+/// A condition that active contacts put on the velocities: the sum of weights times dofs is
+/// `velocity`. A coupled solve holds it.
+struct HeldRow {
+  std::vector<std::pair<GlobalIndex, double>>
+      weights;           ///< by dof of the stack; the same on all ranks
+  double velocity = 0;   ///< [m/s]
+  double impulse = 0;    ///< that the contact model finds for it [kg m/s]
+  double response = 0;   ///< velocity per impulse in the model's response [1/kg]
+  bool is_stiff = true;  ///< false: the solve is given its impulse and does not hold it
+};
+
 /// Result of one resolution of contacts.
 template <int dim>
 struct ContactReport {
   int n_contacts = 0;  ///< number of contacts and joint limits
   int iterations = 0;
+  int n_solves = 0;     ///< coupled solves that held them; 0: they are not part of it
+  double residual = 0;  ///< velocity at contacts that the last of these solves has left [m/s]
   int n_crossings = 0;  ///< crossings of surfaces that are not rigid, which could not be prevented
   double deepest_overlap = 0;      ///< before resolution; 0 where nothing is resolved [m]
   Momentum<dim> external_impulse;  ///< from walls and prescribed solids on the dynamic ones, global
@@ -24,13 +37,17 @@ struct ContactReport {
   /// Generalized reactions of constraints while contact acted, which no solve contains, as
   /// `Reduction::keep_reactions` leaves them. Null: there are none.
   RCP<const Vector> reactions;
+  /// Rows of contacts that push, normal ones and the tangential ones of what sticks, and the
+  /// generalized impulse, by dof, of the friction of what slides; if there was a `ContactResponse`.
+  std::vector<HeldRow> held;
+  std::vector<std::pair<GlobalIndex, double>> sliding;
   /// Impulses of joint limits, each with the dof of its coordinate; the same on all ranks.
   std::vector<std::pair<GlobalIndex, double>> limit_impulses;
 };
 
 /// Returns the operator from generalized impulses on the free dofs to changes of velocity, if it is
-/// not M_S^-1: (M_S - dt D)^-1 of solids whose inner forces answer within the step. Called only if
-/// a contact acts. Collective.
+/// not M_S^-1: (M_S - dt D)^-1 of solids whose inner forces answer within the step, or that of
+/// solids with the fluid around them. Called only if a contact acts. Collective.
 using ContactResponse = std::function<RCP<const LinearOperator>()>;
 
 /// Velocity of the wall of the domain at an end (0 lower, 1 upper) of an axis, tangential to the

@@ -44,6 +44,10 @@ class HydrostaticCoupling {
   virtual std::vector<Momentum<dim>> add_hydrostatic_force(double dt, Vector& momentum) const = 0;
   /// Adds dt (W^T M_F g - B^T p_h): what a solve gives solids in fluid at rest. Local.
   virtual void add_impulse_at_rest(double dt, Vector& momentum) const = 0;
+  /// The mass that solids have with the fluid on them, less M_S: the fluid lumped on them, and for
+  /// rigid ones the added mass of a ball of the volume that they displace [kg]. An estimate, for
+  /// contact. Null: none. Collective.
+  virtual RCP<const CrsMatrix> mass_with_fluid(const SolidSystem<dim>& solids) const = 0;
 };
 
 }  // namespace lockstep

@@ -54,10 +54,12 @@ struct LiquidReport {
 
 /// Height of the free surface around a solid, along the vertical -g/|g|. Global.
 struct WaterLevel {
-  bool known = false;        ///< false: there is no free surface, or no gravity
-  bool is_in_sight = false;  ///< a part of the surface that the solid sees; else all of it
-  bool pierces = false;      ///< air comes near the solid: it pierces the surface, or is above it
-  double height = 0;         ///< mean of the places where liquid meets air [m]
+  bool known = false;    ///< false: there is no free surface, or no gravity
+  bool is_wet = false;   ///< liquid is at the solid, in its sight
+  bool pierces = false;  ///< air comes near the solid: it pierces the surface, or is above it
+  /// Mean of the places where liquid meets air: of those near the solid that it sees, if there are
+  /// any, else of all [m].
+  double height = 0;
 };
 
 /// Side interface of fluids: a liquid with a free surface, on which the air exerts no pressure (p =

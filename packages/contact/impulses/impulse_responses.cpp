@@ -63,13 +63,58 @@ void ImpulseSolver<dim>::find_velocity() {
     velocity_[dof_of(static_cast<int>(id))] = active_[id];
 }
 
+/// True at the edge of Coulomb's cone, and without friction.
+template <int dim>
+bool ImpulseSolver<dim>::slides(const Row& row) const {
+  constexpr double edge = 1 - 1e-9;
+  return row.tangent_impulse.norm() >= edge * row.friction * row.normal_impulse;
+}
+
+template <int dim>
+std::vector<HeldRow> ImpulseSolver<dim>::held_rows() const {
+  std::vector<HeldRow> held;
+  const auto add = [&](const Row& row, const Point<dim>& direction, double velocity, double impulse,
+                       double response) {
+    HeldRow one{{}, velocity - direction.dot(row.prescribed), impulse, response};
+    for (int k = row.begin; k < row.end; ++k)
+      if (const double weight = jacobian_[k].coefficient.dot(direction); weight != 0)
+        one.weights.emplace_back(dof_of(jacobian_[k].id), weight);
+    held.push_back(std::move(one));
+  };
+  for (const Row& row : rows_) {
+    if (row.normal_impulse <= 0)
+      continue;
+    add(row, row.contact.normal, row.target, row.normal_impulse, row.normal_response);
+    for (int k = 0; k < dim - 1 && !slides(row); ++k)
+      add(row, row.tangents.col(k), 0, row.tangent_impulse[k], row.tangent_response);
+  }
+  return held;
+}
+
+template <int dim>
+typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::sliding_impulse() const {
+  Terms impulses;
+  for (const Row& row : rows_) {
+    if (row.normal_impulse <= 0 || !slides(row))
+      continue;
+    const Point<dim> friction = row.tangents * row.tangent_impulse;
+    for (int k = row.begin; k < row.end; ++k)
+      impulses.emplace_back(dof_of(jacobian_[k].id), jacobian_[k].coefficient.dot(friction));
+  }
+  return impulses;
+}
+
 template int ImpulseSolver<2>::activate(int);
 template void ImpulseSolver<2>::find_response(const Row&, Compliance&, double&) const;
 template void ImpulseSolver<2>::extend_limits();
 template void ImpulseSolver<2>::find_velocity();
+template std::vector<HeldRow> ImpulseSolver<2>::held_rows() const;
+template ImpulseSolver<2>::Terms ImpulseSolver<2>::sliding_impulse() const;
 template int ImpulseSolver<3>::activate(int);
 template void ImpulseSolver<3>::find_response(const Row&, Compliance&, double&) const;
 template void ImpulseSolver<3>::extend_limits();
 template void ImpulseSolver<3>::find_velocity();
+template std::vector<HeldRow> ImpulseSolver<3>::held_rows() const;
+template ImpulseSolver<3>::Terms ImpulseSolver<3>::sliding_impulse() const;
 
 }  // namespace lockstep

@@ -4,6 +4,7 @@
 #include "contact/impulses/limit_impulses.hpp"
 #include "contact/impulses/mobility.hpp"
 #include "contact/search/contact_search.hpp"
+#include "interfaces/contact.hpp"
 
 namespace lockstep {
 
@@ -41,6 +42,10 @@ class ImpulseSolver {
   double limit_impulse(int number) const { return limits_.impulse(number); }
   /// J^T impulses, by id: on the dofs of the surfaces themselves, combinations or not.
   std::vector<double> generalized_impulse() const;
+  /// Rows of contacts that push, for a coupled solve to hold; with a response only.
+  std::vector<HeldRow> held_rows() const;
+  /// Impulses, by dof, of the friction of contacts that slide; with a response only.
+  Terms sliding_impulse() const;
   /// Impulse of walls and prescribed solids on the others.
   Momentum<dim> external_impulse() const;
 
@@ -91,6 +96,7 @@ class ImpulseSolver {
                         const Point<dim>& impulse, std::vector<double>& total) const;
   double relax_normal(Row& row);
   double relax_friction(Row& row);
+  bool slides(const Row& row) const;
   Point<dim> impulse(const Row& row) const;
 
   const SolidSystem<dim>& system_;

@@ -11,7 +11,8 @@ constexpr int reach_of_levels = 2;
 
 /// Heights of the places where liquid meets air, around one solid or all of them.
 struct Heights {
-  double sum = 0, n = 0, n_air = 0;
+  double sum = 0, n = 0;
+  double n_air = 0, n_wet = 0;  ///< cells of air near the solid, of liquid at it
 };
 
 template <int dim>
@@ -41,8 +42,8 @@ class LevelFinder {
     std::vector<WaterLevel> levels(n_solids);
     for (int s = 0; s < n_solids; ++s) {
       levels[s].pierces = heights[s].n_air > 0;
-      levels[s].is_in_sight = heights[s].n > 0;
-      const Heights& known = levels[s].is_in_sight ? heights[s] : all[0];
+      levels[s].is_wet = heights[s].n_wet > 0;
+      const Heights& known = heights[s].n > 0 ? heights[s] : all[0];
       levels[s].known = known.n > 0;
       levels[s].height = known.n > 0 ? known.sum / known.n : 0;
     }
@@ -62,8 +63,14 @@ class LevelFinder {
     const Box<dim> around(bounds.min() - margin, bounds.max() + margin);
     surface_.solids_touching(around, candidates_);
     const bool is_alone = candidates_.size() == 1;
+    const Point<dim> one_cell = Point<dim>::Constant(grid_.spacing());
+    const Box<dim> beside(bounds.min() - one_cell, bounds.max() + one_cell);
     for_each_cell_in(around, [&](int cell) {
+      const Point<dim> center = grid_.center(cell);
       heights.n_air += cells_[cell] == CellState::air ? 1 : 0;
+      if (cells_[cell] == CellState::fluid && beside.contains(center) &&
+          (is_alone || is_in_sight(solid, center)))
+        ++heights.n_wet;
       for_each_place(cell, [&](const Point<dim>& x) {
         if (is_alone || is_in_sight(solid, x))
           add(x, heights);
@@ -135,13 +142,14 @@ class LevelFinder {
   void sum(std::vector<Heights>& heights) const {
     std::vector<double> values;
     for (const Heights& one : heights)
-      values.insert(values.end(), {one.sum, one.n, one.n_air});
+      values.insert(values.end(), {one.sum, one.n, one.n_air, one.n_wet});
     sum_all(grid_.comm(), values.data(), static_cast<int>(values.size()));
     auto value = values.cbegin();
     for (Heights& one : heights) {
       one.sum = *value++;
       one.n = *value++;
       one.n_air = *value++;
+      one.n_wet = *value++;
     }
   }
 

@@ -132,6 +132,15 @@ void add_audit(Columns<HistoryRow<dim>>& columns) {
         [](const Row& row) { return row.report.contact_position.n_contacts; }},
        {{"deepest_overlap", "m", "before contact was resolved"},
         [](const Row& row) { return row.report.contact_position.deepest_overlap; }},
+       {{"contact_solves", "1", "coupled solves of S1 and S2 that held contacts"},
+        [](const Row& row) {
+          return row.report.contact_position.n_solves + row.report.contact_velocity.n_solves;
+        }},
+       {{"contact_residual", "m/s", "velocity at contacts that the last of these has left"},
+        [](const Row& row) {
+          return std::max(row.report.contact_position.residual,
+                          row.report.contact_velocity.residual);
+        }},
        {{"clamped_elements", "1", "elements of soft solids whose forces were made definite"},
         [](const Row& row) { return row.report.n_clamped_elements; }},
        {{"wall_seconds", "s", "wall time of the step"},

@@ -109,8 +109,8 @@ bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
 /// forces V_S* = (M_S - dt D)^-1 momentum, so that contact holds what it would have to at the end
 /// of the step, and forces are linearised there.
 template <int dim>
-ContactReport<dim> CoupledSolve<dim>::hold_contacts(const StepContext<dim>& context,
-                                                    Vector& momentum) {
+ContactReport<dim> CoupledSolve<dim>::contact_before_solve(const StepContext<dim>& context,
+                                                           Vector& momentum) {
   ScopedStage stage(timers_, "contact");
   auto& solids = *components_.solids;
   auto& contact = *components_.contact;
@@ -142,24 +142,29 @@ ContactReport<dim> CoupledSolve<dim>::hold_contacts(const StepContext<dim>& cont
 }
 
 template <int dim>
-EndOfStep<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& context,
-                                             const SolidMomentum<dim>& solids,
-                                             const RCP<const Vector>& drag) {
+MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& context,
+                                                      const SolidMomentum<dim>& solids,
+                                                      const RCP<const Vector>& drag) {
   constexpr double round_off = 1e-9;
   const auto momentum = rcp(new Vector(*solids.momentum, Teuchos::Copy));
-  EndOfStep<dim> end;
-  if (components_.contact && components_.solids->has_unknowns()) {
-    // Contact acts before the solve, and knows what the solve gives solids in fluid at rest.
-    const auto at_rest = make_vector(components_.solids->map());
-    if (const auto* coupling = side_of<HydrostaticCoupling<dim>>(*components_.coupling))
-      coupling->add_impulse_at_rest(context.dt, *at_rest);
-    momentum->update(1, *at_rest, 1);
-    end.contact = hold_contacts(context, *momentum);
-    momentum->update(-1, *at_rest, 1);
+  MotionWithContacts<dim> end;
+  if (holds_contacts()) {
+    if (!drag.is_null())
+      momentum->update(1, *drag, 1);
+    MotionWithContacts<dim> held = solve_with_contacts(context, momentum);
+    end.solution = held.solution;
+    end.contact = held.contact;
+  } else {
+    if (components_.contact && components_.solids->has_unknowns()) {
+      const RCP<const Vector> at_rest = impulse_at_rest(context.dt);
+      momentum->update(1, *at_rest, 1);
+      end.contact = contact_before_solve(context, *momentum);
+      momentum->update(-1, *at_rest, 1);
+    }
+    if (!drag.is_null())
+      momentum->update(1, *drag, 1);
+    end.solution = converge(context, momentum);
   }
-  if (!drag.is_null())
-    momentum->update(1, *drag, 1);
-  end.solution = converge(context, momentum);
   if (end.solution.incompatibility > round_off) {
     const double time = context.step.end();
     const std::string impossible = system_.impossible_flow(time, context.constraints);
@@ -179,7 +184,7 @@ void CoupledSolve<dim>::project(const CoupledSolution& solution,
 }
 
 template <int dim>
-void CoupledSolve<dim>::accept(const StepContext<dim>& context, const EndOfStep<dim>& end,
+void CoupledSolve<dim>::accept(const StepContext<dim>& context, const MotionWithContacts<dim>& end,
                                const RCP<const Vector>& reactions) {
   auto& solids = *components_.solids;
   components_.fluid->accept();

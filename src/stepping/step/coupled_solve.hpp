@@ -12,11 +12,11 @@ struct CoupledSolveOptions {
   int newton_iterations = 1;  ///< solves with implicit forces linearised anew
 };
 
-/// The velocities at the end of a step.
+/// Velocities with their contacts.
 template <int dim>
-struct EndOfStep {
+struct MotionWithContacts {
   CoupledSolution solution;
-  ContactReport<dim> contact;  ///< on V_S*, before the pressure
+  ContactReport<dim> contact;
 };
 
 /// Finds p̂ and V of Eq. 16 at frozen geometry, with implicit forces of solids, gas and contact.
@@ -39,22 +39,43 @@ class CoupledSolve {
   /// linearisation. Collective.
   CoupledSolution converge(const StepContext<dim>& context, const RCP<Vector>& momentum,
                            const BlockVector* nearby = nullptr);
-  /// The end of the step: contact acts on V_S*, then the pressure is found. `drag`: viscous impulse
-  /// on the solids; null: none. Throws SolveError if what is prescribed has no solution, but for
-  /// what the grid makes of the solids' shapes. Collective.
-  EndOfStep<dim> velocities(const StepContext<dim>& context, const SolidMomentum<dim>& solids,
-                            const RCP<const Vector>& drag);
+  /// True if contacts are part of the coupled solve: those of rigid bodies without joints, where no
+  /// fluid is closed in. Closed fluid locks a body that touches a wall, since rows of B end there;
+  /// then, and with soft solids and mechanisms, contact acts on V_S* alone. The same on all ranks.
+  bool holds_contacts() const;
+  /// Returns the contacts of the velocities that solids with `momentum` have if the fluid gives
+  /// them what it gives at rest, in the response of `contact_response`. Collective.
+  ContactReport<dim> expected_contacts(const StepContext<dim>& context, const Vector& momentum,
+                                       const ContactResponse& response);
+  /// The response of solids to impulses, with the fluid on them. Collective.
+  ContactResponse contact_response(double dt) const;
+  /// Puts J^T K J of these contacts into the system, and adds J^T (l + K b) to the momentum;
+  /// without contacts the system holds none. Collective.
+  void hold(const ContactReport<dim>& contacts, Vector& momentum);
+  /// Solves for velocities that keep contacts (docs/method.md, "Contact in the coupled system"):
+  /// held as rows of C, for which the contact model decides. Collective.
+  MotionWithContacts<dim> solve_with_contacts(const StepContext<dim>& context,
+                                              const RCP<const Vector>& momentum);
+  /// The end of the step. `drag`: viscous impulse on the solids; null: none. Throws SolveError if
+  /// what is prescribed has no solution, but for what the grid makes of the solids' shapes.
+  /// Collective.
+  MotionWithContacts<dim> velocities(const StepContext<dim>& context,
+                                     const SolidMomentum<dim>& solids,
+                                     const RCP<const Vector>& drag);
   /// u* -= M^-1 G p, and u*_F = W V; `viscous_pressure`: what the pressure for the next step has
   /// besides; null: nothing. Collective.
   void project(const CoupledSolution& solution, const RCP<const Vector>& viscous_pressure);
   /// u^{n+1} = u*, V^{n+1} = V, and joints take note of what they gave; `reactions`: of constraints
   /// in the solve. Collective.
-  void accept(const StepContext<dim>& context, const EndOfStep<dim>& end,
+  void accept(const StepContext<dim>& context, const MotionWithContacts<dim>& end,
               const RCP<const Vector>& reactions);
 
  private:
   bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution);
-  ContactReport<dim> hold_contacts(const StepContext<dim>& context, Vector& momentum);
+  ContactReport<dim> contact_before_solve(const StepContext<dim>& context, Vector& momentum);
+  RCP<Vector> impulse_at_rest(double dt) const;
+  ContactReport<dim> decide(const StepContext<dim>& context, const ContactResponse& response,
+                            Vector& velocity);
 
   Components<dim>& components_;
   CoupledSystem<dim>& system_;

@@ -63,7 +63,13 @@ void PositionUpdate<dim>::solve(const StepContext<dim>& context, const RCP<const
   const RCP<Vector> momentum = solid_forces_.momentum(context, correction).momentum;
   if (!drag.is_null())
     momentum->update(1, *drag, 1);
-  found.solution = solve_.converge(context, momentum, nearby);
+  if (solve_.holds_contacts()) {
+    MotionWithContacts<dim> held = solve_.solve_with_contacts(context, momentum);
+    found.solution = held.solution;
+    found.path.contact = held.contact;
+  } else {
+    found.solution = solve_.converge(context, momentum, nearby);
+  }
   found.velocity = found.solution.velocity;
   found.path.report = found.solution.report;
   found.path.incompatibility = found.solution.incompatibility;
@@ -103,7 +109,7 @@ void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& fo
     found.velocity = settled.velocity;
     found.path.is_converged = settled.is_settled;
     found.path.contact = settled.contact;
-  } else if (components_.contact && solids.has_unknowns()) {
+  } else if (components_.contact && solids.has_unknowns() && !solve_.holds_contacts()) {
     found.path.contact =
         components_.contact->resolve(solids, ContactPhase::position, dt, *found.velocity,
                                      joint_response<dim>(solids, context.dt));

@@ -86,6 +86,11 @@ RCP<Vector> Prediction<dim>::solid_row(const StepContext<dim>& context, const Ex
     components_.coupling->coupling_transposed()->apply(*expected.of_fluid, *row, Teuchos::NO_TRANS,
                                                        -1, 1);
   system_.subtract_given(context.dt, context.constraints, *row);
+  // Where the solids feel the pressure they feel what contact answers to it, too.
+  if (!expected.of_fluid.is_null() && solve_.holds_contacts())
+    solve_.hold(solve_.expected_contacts(context, *solid_forces_.momentum(context).momentum,
+                                         solve_.contact_response(context.dt)),
+                *row);
   if (!expected.of_gas.empty())
     sides_.gas_coupling->add_gas_push(expected.of_gas, *row);
   return row;
@@ -95,6 +100,7 @@ template <int dim>
 Friction<dim> Prediction<dim>::solve(const StepContext<dim>& context, const Expected& expected) {
   const double dt = context.dt;
   const auto& fluid = *components_.fluid;
+  const RCP<Vector> row = solid_row(context, expected);
   RCP<const LinearOperator> block;
   NearNullSpace near_null_space;
   if (components_.solids->has_unknowns()) {
@@ -102,7 +108,6 @@ Friction<dim> Prediction<dim>::solve(const StepContext<dim>& context, const Expe
     block = blocks.solid_block();
     near_null_space = blocks.near_null_space;
   }
-  const RCP<Vector> row = solid_row(context, expected);
   if (!expected.of_fluid.is_null())
     gas_.project(*expected.of_fluid, expected.of_gas);
   const std::unique_ptr<ViscousSystem<dim>> viscous = sides_.viscous_fluid->viscous_system();
@@ -111,6 +116,7 @@ Friction<dim> Prediction<dim>::solve(const StepContext<dim>& context, const Expe
   friction.viscous = solve_viscous<dim>(
       *viscous, *sides_.viscous_fluid, *components_.solids, *sides_.viscous_coupling, block,
       near_null_space, row, dt, context.constraints, options_.viscous, !context.moves_positions);
+  system_.hold(Teuchos::null);
   const double full_mass = viscous->mass->normInf();
   if (full_mass > 0)
     friction.viscous_number =

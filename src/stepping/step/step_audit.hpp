@@ -16,7 +16,7 @@ struct StageResults {
   FluidForces<dim> forces;  ///< before velocities are found, and so on
   Friction<dim> friction;
   SolidMomentum<dim> solids;
-  EndOfStep<dim> end;
+  MotionWithContacts<dim> end;
 };
 
 /// Makes the report of a step: the momentum ledger, the energy budget, the divergence that is left.

@@ -26,6 +26,7 @@ void expect_level_at_any_depth(const Point<dim>& up) {
     const double height = top + 0.13 * i * h;
     const WaterLevel level = level_at_ball<dim>(-9.81 * up, height);
     EXPECT_TRUE(level.known) << i;
+    EXPECT_TRUE(level.is_wet) << i;
     EXPECT_TRUE(level.pierces || i > 0) << i;
     EXPECT_NEAR(level.height, height, 1e-12) << i;
   }
@@ -94,7 +95,7 @@ TEST(LevelsAtSolids, AreThoseInSight) {
 }
 
 /// On the bottom of a dry hull, below the level of the sea around.
-TEST(LevelsAtSolids, AreOutOfSightInADryHull) {
+TEST(LevelsAtSolids, AreNotThoseBeyondADryHull) {
   Case<2> scene({48, 48}, 0.1);
   scene.fluid.set("Gravity", numbers({0.0, -1.0}));
   add_level<2>(scene, 3.02);
@@ -106,9 +107,9 @@ TEST(LevelsAtSolids, AreOutOfSightInADryHull) {
   const auto fluid = make_liquid<2>(scene);
   fluid->set_geometry(solids.snapshot(), BlockedFaces<2>());
   const std::vector<WaterLevel> levels = fluid->liquid()->levels_at_solids();
-  EXPECT_TRUE(levels[0].is_in_sight);
+  EXPECT_TRUE(levels[0].is_wet);
   for (const int ball : {1, 2}) {
-    EXPECT_FALSE(levels[ball].is_in_sight) << ball;
+    EXPECT_FALSE(levels[ball].is_wet) << ball;
     EXPECT_TRUE(levels[ball].pierces) << ball;
   }
 }

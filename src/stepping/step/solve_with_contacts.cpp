@@ -1,0 +1,238 @@
+// Contact as a part of the coupled solve.
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "linear/triplet_matrix.hpp"
+#include "solve/soft/exact_inverse.hpp"
+#include "stepping/step/coupled_solve.hpp"
+
+namespace lockstep {
+
+namespace {
+/// Stiffness of held rows over that of the solids' own response [1]: at 1e4 to 1e6 as many solves
+/// are needed; from 1e8 on round-off tells.
+constexpr double stiffness_factor = 1e5;
+/// Velocity by which solve and contact model may differ, over that which gravity and impacts ask
+/// for [1].
+constexpr double tolerance = 1e-5;
+constexpr int most_solves = 10;
+
+double stiffness_of(const HeldRow& row) {
+  return row.is_stiff ? stiffness_factor / row.response : 0;
+}
+
+/// J^T K J on the map of the stack. Collective.
+RCP<const CrsMatrix> stiffness_matrix(const std::vector<HeldRow>& rows, const RCP<const Map>& map) {
+  std::vector<Triplet> triplets;
+  for (const HeldRow& row : rows)
+    for (const auto& [dof, weight] : row.weights)
+      if (map->isNodeGlobalElement(dof))
+        for (const auto& [other, other_weight] : row.weights)
+          triplets.push_back({dof, other, stiffness_of(row) * weight * other_weight});
+  return assemble_triplets(std::move(triplets), map, map);
+}
+
+/// Adds factor times weights to the dofs of this rank.
+void add_to(const std::vector<std::pair<GlobalIndex, double>>& weights, double factor,
+            Vector& impulse) {
+  for (const auto& [dof, weight] : weights)
+    if (impulse.getMap()->isNodeGlobalElement(dof))
+      impulse.sumIntoGlobalValue(dof, factor * weight);
+}
+
+/// The sums of weights times velocities, of each row. Collective.
+std::vector<double> values_of(const std::vector<HeldRow>& rows, const Vector& velocity,
+                              const Communicator& comm) {
+  std::vector<double> values(rows.size(), 0);
+  const auto data = velocity.getData();
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (const auto& [dof, weight] : rows[k].weights)
+      if (const int local = velocity.getMap()->getLocalElement(dof); local >= 0)
+        values[k] += weight * data[local];
+  sum_all(comm, values.data(), static_cast<int>(values.size()));
+  return values;
+}
+
+template <int dim>
+void set_stiff(bool is_stiff, ContactReport<dim>& contacts) {
+  for (HeldRow& row : contacts.held)
+    row.is_stiff = is_stiff;
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values)
+    most = std::max(most, std::abs(value));
+  return most;
+}
+}  // namespace
+
+template <int dim>
+bool CoupledSolve<dim>::holds_contacts() const {
+  const auto& solids = *components_.solids;
+  const auto is_soft = [](const SolidDescription& solid) {
+    return !solid.rigid && !solid.prescribed;
+  };
+  const auto& has_level = components_.fluid->regions().has_dirichlet;
+  return components_.contact && solids.has_unknowns() && !solids.joints() &&
+         std::none_of(solids.solids().begin(), solids.solids().end(), is_soft) &&
+         std::all_of(has_level.begin(), has_level.end(), [](char has) { return has != 0; });
+}
+
+template <int dim>
+RCP<Vector> CoupledSolve<dim>::impulse_at_rest(double dt) const {
+  const auto impulse = make_vector(components_.solids->map());
+  if (const auto* coupling = side_of<HydrostaticCoupling<dim>>(*components_.coupling))
+    coupling->add_impulse_at_rest(dt, *impulse);
+  return impulse;
+}
+
+template <int dim>
+ContactResponse CoupledSolve<dim>::contact_response(double dt) const {
+  return [this, dt, response = RCP<const LinearOperator>()]() mutable {
+    if (response.is_null()) {
+      const auto& solids = *components_.solids;
+      RCP<const CrsMatrix> with_fluid = components_.coupling->added_mass();
+      if (const auto* coupling = side_of<HydrostaticCoupling<dim>>(*components_.coupling))
+        with_fluid = coupling->mass_with_fluid(solids);
+      response = exact_inverse(solids.solid_block(with_fluid, dt),
+                               "solids in contact with the fluid on them");
+    }
+    return response;
+  };
+}
+
+template <int dim>
+ContactReport<dim> CoupledSolve<dim>::decide(const StepContext<dim>& context,
+                                             const ContactResponse& response, Vector& velocity) {
+  ScopedStage stage(timers_, "contact");
+  const ContactPhase phase =
+      context.moves_positions ? ContactPhase::position : ContactPhase::velocity;
+  return components_.contact->resolve(*components_.solids, phase, context.step.dt, velocity,
+                                      response);
+}
+
+template <int dim>
+ContactReport<dim> CoupledSolve<dim>::expected_contacts(const StepContext<dim>& context,
+                                                        const Vector& momentum,
+                                                        const ContactResponse& response) {
+  const auto& solids = *components_.solids;
+  Vector velocity(*solids.velocity(), Teuchos::Copy), given(momentum, Teuchos::Copy);
+  apply(*solids.mass(), velocity, given, -1, 1);
+  given.update(1, *impulse_at_rest(context.dt), 1);
+  context.constraints.restrict(given);
+  apply(*response(), given, velocity, 1, 1);
+  context.constraints.expand(velocity);
+  return decide(context, response, velocity);
+}
+
+template <int dim>
+void CoupledSolve<dim>::hold(const ContactReport<dim>& contacts, Vector& momentum) {
+  system_.hold(contacts.held.empty() ? RCP<const CrsMatrix>()
+                                     : stiffness_matrix(contacts.held, components_.solids->map()));
+  add_to(contacts.sliding, 1, momentum);
+  for (const HeldRow& row : contacts.held)
+    add_to(row.weights, row.impulse + stiffness_of(row) * row.velocity, momentum);
+}
+
+/// Impulses that the contacts of a solve have given: J^T l~ with l~ = l - K (J V - b). Collective.
+template <int dim>
+RCP<Vector> impulse_of(const ContactReport<dim>& contacts, const Vector& velocity,
+                       const SolidSystem<dim>& solids) {
+  const auto impulse = make_vector(solids.map());
+  add_to(contacts.sliding, 1, *impulse);
+  const std::vector<double> values = values_of(contacts.held, velocity, solids.comm());
+  for (std::size_t r = 0; r < values.size(); ++r) {
+    const HeldRow& row = contacts.held[r];
+    add_to(row.weights, row.impulse - stiffness_of(row) * (values[r] - row.velocity), *impulse);
+  }
+  return impulse;
+}
+
+/// In turn the contact model decides, in the response R of the solids with the fluid on them, which
+/// contacts push and with what impulses l+, and a solve holds those,
+///
+///   (C + J^T K J) V + B^T p = q + J^T (l + K b),   l~ = l - K (J V - b),
+///
+/// so that C V + B^T p = q + J^T l~ exactly. The first decision is about what the solve gives in
+/// fluid at rest, so that what lies takes one solve. They agree when l+ for the velocity V - R^-1
+/// J^T l~ is l~.
+template <int dim>
+MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext<dim>& context,
+                                                               const RCP<const Vector>& momentum) {
+  const auto& solids = *components_.solids;
+  const ContactResponse response = contact_response(context.dt);
+  ContactReport<dim> decision = expected_contacts(context, *momentum, response);
+  MotionWithContacts<dim> best;
+  bool is_stiff = true;
+  for (int k = 1;; ++k) {
+    MotionWithContacts<dim> held;
+    const auto pushed = rcp(new Vector(*momentum, Teuchos::Copy));
+    hold(decision, *pushed);
+    const BlockVector* nearby = k > 1 ? &best.solution.unknowns : nullptr;
+    try {
+      held.solution = solve(context, pushed, context.solve, nearby);
+    } catch (const SolveError&) {
+      if (decision.held.empty() || !is_stiff)
+        throw;
+      // Closed fluid does not let solids meet: what it takes to hold them there is beyond
+      // round-off.
+      is_stiff = false;
+      set_stiff(false, decision);
+      pushed->update(1, *momentum, 0);
+      hold(decision, *pushed);
+      held.solution = solve(context, pushed, context.solve, nearby);
+    }
+    const RCP<const Vector> impulse = impulse_of(decision, *held.solution.velocity, solids);
+    held.solution.momentum = rcp(new Vector(*momentum, Teuchos::Copy));
+    held.solution.momentum->update(1, *impulse, 1);
+    held.contact = decision;
+    held.contact.impulse = impulse;
+    held.contact.external_impulse = solids.momentum(*impulse);
+
+    Vector free(*held.solution.velocity, Teuchos::Copy), reduced(*impulse, Teuchos::Copy);
+    context.constraints.restrict(reduced);
+    apply(*response(), reduced, free, -1, 1);
+    context.constraints.expand(free);
+    Vector change(free, Teuchos::Copy);
+    ContactReport<dim> next = decide(context, response, change);
+    Vector difference(change, Teuchos::Copy);
+    difference.update(-1, *held.solution.velocity, 1);
+    change.update(-1, free, 1);
+    held.contact.residual = std::max(largest(values_of(decision.held, difference, solids.comm())),
+                                     largest(values_of(next.held, difference, solids.comm())));
+    const double scale = std::max(context.dt * components_.fluid->gravity().norm(),
+                                  largest(values_of(next.held, change, solids.comm())));
+    if (k == 1 || held.contact.residual < best.contact.residual)
+      best = held;
+    if (held.contact.residual <= tolerance * scale || k == most_solves) {
+      best.contact.n_solves = best.contact.held.empty() ? 0 : k;
+      system_.hold(Teuchos::null);
+      return best;
+    }
+    decision = std::move(next);
+    set_stiff(is_stiff, decision);
+  }
+}
+
+template bool CoupledSolve<2>::holds_contacts() const;
+template bool CoupledSolve<3>::holds_contacts() const;
+template RCP<Vector> CoupledSolve<2>::impulse_at_rest(double) const;
+template RCP<Vector> CoupledSolve<3>::impulse_at_rest(double) const;
+template ContactResponse CoupledSolve<2>::contact_response(double) const;
+template ContactResponse CoupledSolve<3>::contact_response(double) const;
+template ContactReport<2> CoupledSolve<2>::expected_contacts(const StepContext<2>&, const Vector&,
+                                                             const ContactResponse&);
+template ContactReport<3> CoupledSolve<3>::expected_contacts(const StepContext<3>&, const Vector&,
+                                                             const ContactResponse&);
+template void CoupledSolve<2>::hold(const ContactReport<2>&, Vector&);
+template void CoupledSolve<3>::hold(const ContactReport<3>&, Vector&);
+template MotionWithContacts<2> CoupledSolve<2>::solve_with_contacts(const StepContext<2>&,
+                                                                    const RCP<const Vector>&);
+template MotionWithContacts<3> CoupledSolve<3>::solve_with_contacts(const StepContext<3>&,
+                                                                    const RCP<const Vector>&);
+
+}  // namespace lockstep
