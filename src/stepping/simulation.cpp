@@ -242,7 +242,7 @@ bool Simulation<dim>::step() {
     ++step_;
     last_dt_ = dt;
     summary_.count(*report_);
-    warn();
+    warnings_.after_step(step_, *report_, components_, log_);
     step_seconds_ = seconds_since(step_start);
     write_rows();
     write_what_is_due();
