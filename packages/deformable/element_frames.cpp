@@ -104,7 +104,7 @@ void add_element_frames(const ElementForces<dim>& forces, std::vector<SurfaceFra
     SurfaceFrame frame;
     frame.name = body.name + " elements";
     frame.dimension = dim;
-    frame.simplenodes.xsize = n_corners;
+    frame.simplex_size = n_corners;
     frame.vertices.resize(std::size_t(n_nodes) * dim);
     for (std::size_t k = 0; k < places.size(); k += dim + 1) {
       std::copy_n(&places[k + 1], dim,
