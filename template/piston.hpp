@@ -18,6 +18,7 @@ class Piston : public lockstep::SolidModel<2>, public lockstep::AuditedSolids<2>
   Piston(const Options& options, const lockstep::Communicator& comm);
 
   std::string name() const override { return "piston"; }
+  const lockstep::AuditedSolids<2>* audit() const override { return this; }
   void save(lockstep::CheckpointWriter& checkpoint) const override;
   void load(const lockstep::CheckpointReader& checkpoint) override;
   const std::vector<lockstep::SolidDescription>& solids() const override { return solids_; }

@@ -120,10 +120,9 @@ class SteppedRun : public AnyRun {
       for (std::size_t s = 0; s < described.size(); ++s) {
         if (described[s].name != body)
           continue;
-        auto* loads = side_of<LoadableSolids<dim>>(solids().model(m));
-        check_input(loads != nullptr, "\"{}\" is no rigid body; only those take forces here.",
-                    body);
-        return loads->set_load(static_cast<int>(s), total, turning);
+        const bool is_pushed = solids().model(m).set_load(static_cast<int>(s), total, turning);
+        return check_input(is_pushed, "\"{}\" is no rigid body; only those take forces here.",
+                           body);
       }
     }
     check_input(false, "There is no solid \"{}\".", body);

@@ -74,7 +74,7 @@ class BodyFinder {
       for (std::size_t s = 0; s < solids.size(); ++s) {
         if (solids[s].name != name)
           continue;
-        const auto* jointable = side_of<JointableSolids<dim>>(*model);
+        const auto* jointable = model->jointable();
         check_input(jointable,
                     "The joint \"{}\" names the solid \"{}\", which is not rigid; joints "
                     "connect rigid bodies, attach its nodes to one.",

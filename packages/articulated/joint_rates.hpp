@@ -17,6 +17,8 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public Wor
              double start_time);
 
   std::string name() const override { return "joints"; }
+  const AuditedSolids<dim>* audit() const override { return this; }
+  const WorkingSolids<dim>* work() const override { return this; }
   const std::vector<SolidDescription>& solids() const override { return none_; }
   const SurfaceMesh<dim>& surface() const override { return surface_; }
   void velocity_row(const SurfacePoint<dim>&, const Point<dim>&,

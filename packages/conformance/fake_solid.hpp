@@ -39,6 +39,7 @@ class FakeSolid : public SolidModel<dim>, public AuditedSolids<dim> {
             const Communicator& comm);
 
   std::string name() const override { return "fake solid"; }
+  const AuditedSolids<dim>* audit() const override { return this; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
   const std::vector<SolidDescription>& solids() const override { return solids_; }

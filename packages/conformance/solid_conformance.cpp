@@ -110,7 +110,7 @@ void check_momentum(const SolidModel<dim>& model, Violations& found) {
   const double by_mass = momentum->dot(*model.velocity()) / 2;
   expect_small(found, (kinetic - by_mass) / std::max(by_mass, 1e-300), 1e-9,
                "states: kinetic energies are not V_S M_S V_S / 2");
-  const auto* audited = side_of<AuditedSolids<dim>>(model);
+  const auto* audited = model.audit();
   if (!audited)
     return;
   const auto each = audited->momentum_of_each(*momentum);
@@ -129,7 +129,7 @@ void check_momentum(const SolidModel<dim>& model, Violations& found) {
 /// Inner forces add up to nothing, so what explicit_momentum changes is the external impulse.
 template <int dim>
 void check_impulses(const SolidModel<dim>& model, Violations& found) {
-  const auto* audited = side_of<AuditedSolids<dim>>(model);
+  const auto* audited = model.audit();
   if (!audited)
     return;
   const auto before = make_vector(model.dof_map()), after = make_vector(model.dof_map());

@@ -38,37 +38,37 @@ std::vector<Point<dim>> points_of(const std::vector<double>& values) {
 template <int dim>
 void DeformableSolids<dim>::save(CheckpointWriter& writer) const {
   std::vector<GlobalIndex> ids;
-  for (int i = 0; i < space_.n_owned(); ++i)
-    ids.push_back(space_.original(i));
+  for (int i = 0; i < nodes_.n_owned(); ++i)
+    ids.push_back(nodes_.space.original(i));
   writer.file().create_group(type_);
-  writer.file().write_text(type_ + "/names", joined_names(bodies_));
-  writer.write_distributed(type_ + "/positions", ids, numbers_of<dim>(x_, ids.size()), dim);
+  writer.file().write_text(type_ + "/names", joined_names(nodes_.bodies));
+  writer.write_distributed(type_ + "/positions", ids, numbers_of<dim>(nodes_.x, ids.size()), dim);
   writer.write_distributed(type_ + "/velocities", ids,
-                           numbers_of<dim>(space_.owned(*velocity_), ids.size()), dim);
+                           numbers_of<dim>(nodes_.space.owned(*nodes_.velocity), ids.size()), dim);
   writer.file().write_replicated(type_ + "/surface velocities",
-                                 numbers_of<dim>(surface_velocity_, surface_velocity_.size()), dim);
+                                 numbers_of<dim>(surface_.velocity(), surface_.velocity().size()),
+                                 dim);
 }
 
 template <int dim>
 void DeformableSolids<dim>::load(const CheckpointReader& reader) {
   const Hdf5File& file = reader.file();
   check_input(
-      file.exists(type_ + "/names") && file.read_text(type_ + "/names") == joined_names(bodies_),
+      file.exists(type_ + "/names") &&
+          file.read_text(type_ + "/names") == joined_names(nodes_.bodies),
       "{}: the checkpoint does not hold the solids of type \"{}\" of this scene; restart with the "
       "scene that wrote it.",
       file.path(), type_);
   std::vector<GlobalIndex> ids;
-  for (int i = 0; i < space_.n_local(); ++i)
-    ids.push_back(space_.original(i));
-  x_ = points_of<dim>(reader.read_distributed<double>(type_ + "/positions", ids));
-  ids.resize(space_.n_owned());
-  velocity_ =
-      space_.vector(points_of<dim>(reader.read_distributed<double>(type_ + "/velocities", ids)));
-  surface_velocity_ = points_of<dim>(file.read_all<double>(type_ + "/surface velocities"));
-  before_.reset();
-  moved_ = false;
-  linearisation_ = Teuchos::null;
-  update_geometry();
+  for (int i = 0; i < nodes_.space.n_local(); ++i)
+    ids.push_back(nodes_.space.original(i));
+  nodes_.x = points_of<dim>(reader.read_distributed<double>(type_ + "/positions", ids));
+  ids.resize(nodes_.n_owned());
+  nodes_.velocity = nodes_.space.vector(
+      points_of<dim>(reader.read_distributed<double>(type_ + "/velocities", ids)));
+  surface_.place(points_of<dim>(file.read_all<double>(type_ + "/surface velocities")));
+  implicit_.end_step();
+  update();
 }
 
 template void DeformableSolids<2>::save(CheckpointWriter&) const;

@@ -20,8 +20,8 @@ std::unique_ptr<SolidModel<dim>> make_model(const std::string& type, const Read&
     bodies.back().fluid_density =
         setting.fluid_density * (bodies.back().closed ? 1 : setting.smallest_length);
   }
-  return std::make_unique<DeformableSolids<dim>>(type, std::move(bodies), setting.gravity,
-                                                 setting.comm, setting.start_time);
+  return std::make_unique<DeformableSolids<dim>>(type, bodies, setting.gravity, setting.comm,
+                                                 setting.start_time);
 }
 
 }  // namespace

@@ -155,12 +155,13 @@ RigidVector<dim> RigidBodies<dim>::load_impulse(const RigidBody<dim>& body, doub
 }
 
 template <int dim>
-void RigidBodies<dim>::set_load(int solid, const Point<dim>& force,
+bool RigidBodies<dim>::set_load(int solid, const Point<dim>& force,
                                 const AngularVector<dim>& torque) {
   check_input(bodies_[solid].dynamic(), "\"{}\" is prescribed; no force moves it.",
               solids_[solid].name);
   bodies_[solid].force = force;
   bodies_[solid].torque = torque;
+  return true;
 }
 
 template <int dim>

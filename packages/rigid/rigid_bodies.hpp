@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "interfaces/solid_sides.hpp"
-#include "interfaces/steering.hpp"
 #include "parameters/parameter_list.hpp"
 #include "rigid/rigid_body.hpp"
 
@@ -23,7 +22,6 @@ template <int dim>
 class RigidBodies : public SolidModel<dim>,
                     public AuditedSolids<dim>,
                     public JointableSolids<dim>,
-                    public LoadableSolids<dim>,
                     public SolidOutput<dim> {
  public:
   /// gravity [m/s^2]; prescribed bodies are put where they are at `start_time` [s]. Collective.
@@ -31,6 +29,9 @@ class RigidBodies : public SolidModel<dim>,
               const Communicator& comm, double start_time = 0);
 
   std::string name() const override { return "rigid body"; }
+  const AuditedSolids<dim>* audit() const override { return this; }
+  const JointableSolids<dim>* jointable() const override { return this; }
+  const SolidOutput<dim>* output() const override { return this; }
   const std::vector<RigidBody<dim>>& bodies() const { return bodies_; }
   double time() const { return time_; }  ///< time of the present positions [s]
 
@@ -61,7 +62,7 @@ class RigidBodies : public SolidModel<dim>,
   RigidFrame<dim> prescribed_frame(int solid, double time) const override;
   GlobalIndex first_dof(int solid) const override { return first_dof_[solid]; }
   std::string unjointable(int solid) const override;
-  void set_load(int solid, const Point<dim>& force, const AngularVector<dim>& torque) override;
+  bool set_load(int solid, const Point<dim>& force, const AngularVector<dim>& torque) override;
   void add_frames(
       std::vector<SurfaceFrame>& frames) const override;  ///< surfaces of solids that no fluid sees
 

@@ -72,7 +72,7 @@ void rigid_row(const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
                const std::vector<ModelBegin>& begin, const SolidDescription& solid,
                const Point<dim>& x, VelocityRow<dim>& row) {
   const SolidModel<dim>& model = *models[solid.model];
-  const auto* jointable = side_of<JointableSolids<dim>>(model);
+  const auto* jointable = model.jointable();
   if (jointable && solid.simplex_begin == solid.simplex_end) {
     unseen_row(*jointable, solid.index_in_model, x, row);
   } else {

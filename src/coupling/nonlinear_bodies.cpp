@@ -10,10 +10,8 @@ NonlinearBodies<dim>::NonlinearBodies(const SolidSystem<dim>& solids) : solids_(
   for (int m = 0; m < solids.n_models(); ++m) {
     const SolidModel<dim>& model = solids.model(m);
     const auto n_rows = static_cast<int>(model.dof_map()->getNodeNumElements());
-    const auto* forces = side_of<NonlinearSolids<dim>>(model);
-    const std::vector<int> own = forces && forces->has_implicit_forces()
-                                     ? forces->solid_of_row()
-                                     : std::vector<int>(n_rows, -1);
+    const std::vector<int> own =
+        solids.nonlinear(m) ? model.solid_of_row() : std::vector<int>(n_rows, -1);
     for (int row = 0; row < n_rows; ++row) {
       solid_of_row_.push_back(own[row] < 0 ? -1 : first + own[row]);
       axis_of_row_.push_back(row % dim);

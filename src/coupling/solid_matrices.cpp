@@ -80,8 +80,7 @@ NearNullSpace SolidSystem<dim>::near_null_space(const RCP<const CrsMatrix>& adde
   NearNullSpace all;
   RCP<MultiVector> motions;
   for (int m = 0; m < n_models(); ++m) {
-    const auto* known = side<NearNullSpaces<dim>>(m);
-    const RigidMotions part = known ? known->near_null_space() : RigidMotions();
+    const RigidMotions part = model(m).near_null_space();
     if (part.empty())
       continue;
     if (motions.is_null()) {

@@ -215,7 +215,7 @@ template <int dim>
 AngularVector<dim> SolidSystem<dim>::inner_angular_impulse(double dt) const {
   AngularVector<dim> total = AngularVector<dim>::Zero();
   for (int m = 0; m < n_models(); ++m) {
-    if (const auto* audited = side<AuditedSolids<dim>>(m))
+    if (const auto* audited = model(m).audit())
       total += audited->inner_angular_impulse(dt);
   }
   return total;
@@ -225,7 +225,7 @@ template <int dim>
 Momentum<dim> SolidSystem<dim>::external_impulse(double time, double dt) const {
   Momentum<dim> total;
   for (int m = 0; m < n_models(); ++m) {
-    if (const auto* audited = side<AuditedSolids<dim>>(m))
+    if (const auto* audited = model(m).audit())
       total += audited->external_impulse(time, dt);
   }
   return total;
@@ -235,17 +235,13 @@ template <int dim>
 bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
   bool any = false;
   for (int m = 0; m < n_models(); ++m) {
-    if (nonlinear(m))
-      any = side_of<NonlinearSolids<dim>>(model(m))->linearise(dt, *part(velocity, m)) || any;
+    if (auto* forces = nonlinear(m)) {
+      forces->linearise(dt, *part(velocity, m));
+      any = true;
+    }
   }
   ++linearisation_number_;
   return any;
-}
-
-template <int dim>
-const NonlinearSolids<dim>* SolidSystem<dim>::nonlinear(int m) const {
-  const auto* forces = side<NonlinearSolids<dim>>(m);
-  return forces && forces->has_implicit_forces() ? forces : nullptr;
 }
 
 template <int dim>
@@ -260,7 +256,7 @@ template <int dim>
 bool SolidSystem<dim>::is_audited() const {
   bool all = true;
   for (int m = 0; m < n_models(); ++m)
-    all = all && side<AuditedSolids<dim>>(m);
+    all = all && model(m).audit();
   return all;
 }
 
@@ -306,7 +302,7 @@ std::vector<Momentum<dim>> SolidSystem<dim>::momentum_of_each(
     const Vector& generalized_momentum) const {
   std::vector<Momentum<dim>> all;
   for (int m = 0; m < n_models(); ++m) {
-    const auto* audited = side<AuditedSolids<dim>>(m);
+    const auto* audited = model(m).audit();
     if (!audited) {
       all.resize(all.size() + model(m).solids().size());
       continue;
@@ -337,7 +333,7 @@ template <int dim>
 GlobalIndex SolidSystem<dim>::n_clamped_elements() const {
   GlobalIndex n = 0;
   for (int m = 0; m < n_models(); ++m) {
-    if (const auto* output = side<SolidOutput<dim>>(m))
+    if (const auto* output = model(m).output())
       n += output->n_clamped_elements();
   }
   return n;
@@ -347,7 +343,7 @@ template <int dim>
 double SolidSystem<dim>::stretch_beyond_limit() const {
   double worst = 0;
   for (int m = 0; m < n_models(); ++m) {
-    if (const auto* output = side<SolidOutput<dim>>(m))
+    if (const auto* output = model(m).output())
       worst = std::max(worst, output->stretch_beyond_limit());
   }
   return worst;

@@ -106,10 +106,13 @@ class SolidSystem {
   RCP<Vector> implicit_impulse(double dt, const Vector& velocity) const;
   AngularVector<dim> inner_angular_impulse(double dt) const;  ///< sum over all models [kg m^2/s]
   Momentum<dim> external_impulse(double time, double dt) const;
+  /// Linearises all models' implicit forces; false if there are none. Collective.
   bool linearise(double dt, const Vector& velocity);
   /// Another number after anything that changes the implicit forces: a step that begins or
   /// linearises anew, a motion, velocities. Local.
   unsigned linearisation_number() const { return linearisation_number_; }
+  /// The model's side of nonlinear forces, or null.
+  NonlinearSolids<dim>* nonlinear(int m) const { return models_[m]->nonlinear(); }
   /// Nonlinear implicit forces: true if any model has them; the linearisation of all models; the
   /// energies of each solid (see NonlinearSolids).
   bool has_implicit_forces() const;
@@ -128,13 +131,6 @@ class SolidSystem {
   bool is_audited() const;
 
  private:
-  /// A side interface of a model, or null.
-  template <typename Side>
-  const Side* side(int m) const {
-    return side_of<Side>(model(m));
-  }
-  /// Returns the model's side of nonlinear forces; null if it has none in this scene.
-  const NonlinearSolids<dim>* nonlinear(int m) const;
   void find_reduction();
   void move_attached(const Vector& velocity, double time, double dt);
   std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;

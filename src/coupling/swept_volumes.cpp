@@ -48,7 +48,7 @@ template <int dim>
 SoftRows soft_rows(const SolidSystem<dim>& solids, const Box<dim>& domain) {
   SoftRows rows;
   for (int m = 0; m < solids.n_models(); ++m) {
-    const auto* sweeper = dynamic_cast<const VolumeSweeper<dim>*>(&solids.model(m));
+    const auto* sweeper = solids.model(m).sweeper();
     const std::size_t begin = rows.solid.size();
     rows.solid.resize(begin + solids.model(m).dof_map()->getNodeNumElements(), -1);
     rows.swept.resize(rows.solid.size(), 0);
@@ -65,7 +65,7 @@ SoftRows soft_rows(const SolidSystem<dim>& solids, const Box<dim>& domain) {
     }
     const RCP<const Vector> swept = sweeper->swept_per_velocity();
     const auto values = swept->getData();
-    const std::vector<int> solid_of_row = sweeper->solid_of_row();
+    const std::vector<int> solid_of_row = solids.model(m).solid_of_row();
     for (std::size_t i = 0; i < solid_of_row.size(); ++i) {
       rows.solid[begin + i] = number[solid_of_row[i]];
       rows.swept[begin + i] = values[i];
@@ -306,7 +306,7 @@ void sweep_volumes(const SweptRates& rates, const SolidSystem<dim>& solids, doub
   std::size_t begin = 0;
   for (std::size_t m = 0; m < rates.size(); ++m) {
     const SolidModel<dim>& model = solids.model(static_cast<int>(m));
-    if (const auto* sweeper = dynamic_cast<const VolumeSweeper<dim>*>(&model)) {
+    if (const auto* sweeper = model.sweeper()) {
       std::vector<double> volumes = rates[m];
       for (double& volume : volumes)
         volume *= dt;

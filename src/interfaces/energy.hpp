@@ -32,7 +32,7 @@ struct SolidWork {
   double loads = 0;    ///< work of gravity and loads
 };
 
-/// Side interface of solids with other forces than loads.
+/// A side of solids with other forces than loads.
 template <int dim>
 class WorkingSolids {
  public:

@@ -4,6 +4,7 @@
 #include "geometry/surface_snapshot.hpp"
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
+#include "linear/near_null_space.hpp"
 #include "linear/types.hpp"
 
 namespace lockstep {
@@ -38,6 +39,20 @@ struct NodeAttachment {
   Point<dim> position = Point<dim>::Zero();  ///< present [m]
   std::string solid;                         ///< name of the rigid solid
 };
+
+template <int dim>
+class AuditedSolids;  // interfaces/solid_sides.hpp
+template <int dim>
+class JointableSolids;  // interfaces/solid_sides.hpp
+template <int dim>
+class NonlinearSolids;  // interfaces/solid_sides.hpp
+template <int dim>
+class SolidOutput;  // interfaces/solid_sides.hpp
+template <int dim>
+class VolumeSweeper;  // interfaces/volume_sweeper.hpp
+template <int dim>
+class WorkingSolids;  // interfaces/energy.hpp
+
 /// All solids of one kind (all rigid bodies, all deformables, ...): their unknowns, mass, forces
 /// and surfaces. Knows nothing of the fluid and nothing of other models.
 ///
@@ -75,6 +90,13 @@ class SolidModel : public PlugIn {
   virtual RCP<const LinearOperator> mass() const = 0;
   /// D(dt): symmetric negative semidefinite linearisation of the implicit forces [kg/s], or null.
   virtual RCP<const LinearOperator> implicit_force(double dt) const;
+  /// The motions at the present positions that D does not resist, on `dof_map`, of models with
+  /// nodes: the near null space of C, on which its multigrid inverses are built. Default: none,
+  /// stiff solids are inverted by their diagonal. Collective.
+  virtual RigidMotions near_null_space() const { return {}; }
+  /// The solid of each local row of `dof_map`, asked of NonlinearSolids and VolumeSweepers alone:
+  /// their rows are velocities of nodes, along all axes of one after those of another. Local.
+  virtual std::vector<int> solid_of_row() const { return {}; }
   /// momentum = M_S V_S* = M_S V^n + dt (explicit forces, gravity included) [kg m/s]. Collective.
   virtual void explicit_momentum(double time, double dt, Vector& momentum) const = 0;
   /// S1 only, dt the half step: added to `explicit_momentum` so that its V_S* is the mean velocity
@@ -113,6 +135,24 @@ class SolidModel : public PlugIn {
   virtual std::vector<SolidState<dim>> states() const = 0;  ///< one per solid, on every rank
   /// Largest stable step of explicitly integrated forces [s]. Default: none.
   virtual double largest_stable_step() const;
+  /// Pushes a solid from the next step on, instead of the loads of the scene: a force at the centre
+  /// of mass [N] and a torque about it [N m]. A program around a run calls it alike on all ranks,
+  /// and again after a restart: checkpoints do not keep it. Returns false if these solids cannot be
+  /// pushed, the default; throws InputError if this one is prescribed. Local.
+  virtual bool set_load(int /*solid*/, const Point<dim>& /*force*/,
+                        const AngularVector<dim>& /*torque*/) {
+    return false;
+  }
+
+  // Sides: what else it can do, each an object of its own. Null: it cannot; the same in all of a
+  // run and on all ranks. Local.
+
+  virtual const AuditedSolids<dim>* audit() const { return nullptr; }
+  virtual const JointableSolids<dim>* jointable() const { return nullptr; }
+  virtual NonlinearSolids<dim>* nonlinear() { return nullptr; }  ///< null: not in this scene
+  virtual const SolidOutput<dim>* output() const { return nullptr; }
+  virtual const VolumeSweeper<dim>* sweeper() const { return nullptr; }
+  virtual const WorkingSolids<dim>* work() const { return nullptr; }  ///< null: all are loads
 };
 
 template <int dim>

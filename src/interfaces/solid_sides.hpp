@@ -1,14 +1,13 @@
 #pragma once
 #include "interfaces/solid.hpp"
-#include "linear/near_null_space.hpp"
 #include "motion/rotation.hpp"
 
 namespace lockstep {
 
 struct SurfaceFrame;  // output/frames.hpp
 
-// Side interfaces of solid models (`side_of`) for audits, solvers and outputs. The SolidSystem asks
-// each of its models and does without.
+// Sides of solid models (SolidModel::audit, ...) for audits, solvers and outputs. The SolidSystem
+// asks each of its models and does without.
 
 /// Momentum, for the ledger and for the forces that are reported. Without it a run has no
 /// `momentum_error`, and the forces on these solids are zero in its tables.
@@ -39,13 +38,9 @@ template <int dim>
 class NonlinearSolids {
  public:
   virtual ~NonlinearSolids() = default;
-  /// True if this scene has such forces; else the functions below are not called. Local, the same
-  /// on all ranks.
-  virtual bool has_implicit_forces() const = 0;
   /// A Newton iteration: linearises forces and D at the positions that this velocity reaches in dt,
-  /// instead of at the present ones, until `move` or `set_velocity`. False if nothing depends on
-  /// that. Collective.
-  virtual bool linearise(double dt, const Vector& velocity) = 0;
+  /// instead of at the present ones, until `move` or `set_velocity`. Collective.
+  virtual void linearise(double dt, const Vector& velocity) = 0;
   /// The velocity about which forces and D are linearised at present; null: zero. Local.
   virtual RCP<const Vector> linearisation() const = 0;
   /// Returns for each solid the potential of these forces [J] at the velocity V of the solve over
@@ -53,9 +48,6 @@ class NonlinearSolids {
   /// Global, collective.
   virtual std::vector<ComputedEnergy> nonlinear_energies(double dt,
                                                          const Vector& velocity) const = 0;
-  /// The solid of each local row of `dof_map`. Rows are velocities of nodes, along all axes of one
-  /// after those of another. Local.
-  virtual std::vector<int> solid_of_row() const = 0;
 };
 
 /// A rigid solid as joints see it. Its generalized vectors have dim translations of the reference
@@ -81,16 +73,6 @@ class JointableSolids {
   virtual GlobalIndex first_dof(int solid) const = 0;
   /// Returns a parameter of this solid that excludes joints; empty: there is none.
   virtual std::string unjointable(int solid) const = 0;
-};
-
-/// Near null spaces of C, on which its multigrid inverses are built.
-template <int dim>
-class NearNullSpaces {
- public:
-  virtual ~NearNullSpaces() = default;
-  /// The motions at the present positions that D does not resist, on `dof_map`, of models with
-  /// nodes. Collective.
-  virtual RigidMotions near_null_space() const = 0;
 };
 
 /// Frames and figures that only pictures and tables show.

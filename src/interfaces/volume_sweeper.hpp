@@ -5,7 +5,7 @@
 
 namespace lockstep {
 
-/// Side interface of solid models with nodes: the volume that a surface sweeps in a step can be
+/// A side of solid models with nodes: the volume that a surface sweeps in a step can be
 /// given. Nodes move on straight lines, and the fluid sees their velocity at its own faces, so that
 /// the volume a surface sweeps is not quite the volume that the fluid makes room for. In a closed
 /// region the difference has nowhere to go: it adds up to a pressure level and to a loss of volume.
@@ -20,7 +20,6 @@ class VolumeSweeper {
   /// Volume that each solid's surface sweeps along its normals, per velocity of each dof, at the
   /// present positions [m^(dim-1)]: on `dof_map`.
   virtual RCP<const Vector> swept_per_velocity() const = 0;
-  virtual std::vector<int> solid_of_row() const = 0;  ///< solid of each local row. Local.
   /// S1: changes velocities that are about to move the positions by dt so that the surface of each
   /// solid sweeps the given volume [m^dim]; those of nan stay. Shells move along their normals,
   /// closed solids swell about their centre of mass, which stays. Collective.

@@ -154,7 +154,7 @@ Frame Simulation<dim>::frame() const {
     fluid->add_frame(frame.boxes);
   frame.meshes = surface_frames<dim>(*components_.solids, *scheme_->system().surface());
   for (int m = 0; m < components_.solids->n_models(); ++m) {
-    if (const auto* output = side_of<SolidOutput<dim>>(components_.solids->model(m)))
+    if (const auto* output = components_.solids->model(m).output())
       output->add_frames(frame.meshes);
   }
   if (fluid)
@@ -242,7 +242,7 @@ bool Simulation<dim>::step() {
     ++step_;
     last_dt_ = dt;
     summary_.count(*report_);
-    warn();
+    warnings_.after_step(step_, *report_, components_, log_);
     step_seconds_ = seconds_since(step_start);
     write_rows();
     write_what_is_due();

@@ -7,9 +7,11 @@
 #include "output/frames.hpp"
 #include "output/schedule.hpp"
 #include "solve/dumping_strategy.hpp"
+#include "stepping/explanation.hpp"
 #include "stepping/report/observer_tables.hpp"
 #include "stepping/report/run_tables.hpp"
 #include "stepping/run_summary.hpp"
+#include "stepping/run_warnings.hpp"
 #include "stepping/scene.hpp"
 
 namespace lockstep {
@@ -40,7 +42,9 @@ class Simulation {
              const RunOptions& options, const Communicator& comm, const Log& log);
 
   /// Tells what is active, why, and what it costs in memory; for --explain and --validate.
-  std::string explain();
+  std::string explain() {
+    return explanation(components_, *scheme_, scene_options_.step.prediction.incremental_pressure);
+  }
   /// Runs to the end or to a signal; returns the exit code (0, or 128 + signal). Collective.
   int run();
 
@@ -93,8 +97,6 @@ class Simulation {
   void load_checkpoint();
   void resume_frames();
   double fraction_done() const;
-  void warn();
-  void warn_of_watches();
 
   std::unique_ptr<FolderLock> folder_lock_;  // on rank 0, until the last is written
   ParameterList scene_;
@@ -112,8 +114,7 @@ class Simulation {
   static constexpr double never_ = -1e300;
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;
-  bool warned_of_viscous_step_ = false, warned_of_stretch_ = false, warned_of_unsettled_ = false;
-  std::vector<char> warned_of_watch_;
+  RunWarnings<dim> warnings_;
   double last_dt_ = 0;
   double last_frame_ = never_;                ///< time of the last frame that was due [s]
   double fraction_at_begin_ = 0;              ///< part of the run done before this program [1]

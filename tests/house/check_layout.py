@@ -44,8 +44,8 @@ MOST_HOMES = 2  # .cpp files that define functions of one class
 MOST_BASES = 4
 MOST_PARAMETERS = 6
 # Exceptions and their numbers: these lists may only shrink.
-KNOWN_HOMES = {"DeformableSolids": 9, "VolumeLedger": 3, "SolidSystem": 3, "Hdf5File": 3, "Simulation": 4, "Stepper": 7}
-KNOWN_BASES = {"DeformableSolids": 7, "FaceCoupling": 6, "RigidBodies": 5}
+KNOWN_HOMES = {"VolumeLedger": 3, "SolidSystem": 3, "Hdf5File": 3, "Stepper": 7}
+KNOWN_BASES = {"FaceCoupling": 6}
 KNOWN_PARAMETERS = {
     "solve_viscous": 11,
     "advance": 8, "populate_uncovered_scalar": 8, "set": 8, "settle_motion": 8,

@@ -47,7 +47,7 @@ std::vector<Point<dim>> centers_of(const SolidSystem<dim>& system) {
     const SolidDescription& solid = system.solids()[i];
     if (!solid.rigid)
       continue;
-    if (const auto* framed = side_of<JointableSolids<dim>>(system.model(solid.model))) {
+    if (const auto* framed = system.model(solid.model).jointable()) {
       centers[i] = framed->rigid_frame(solid.index_in_model).position;
       continue;
     }

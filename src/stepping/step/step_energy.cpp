@@ -13,7 +13,7 @@ namespace {
 template <int dim>
 SolidWork work_of_model(const SolidModel<dim>& model, const StepContext<dim>& context,
                         const Vector& velocity, const Vector& mean) {
-  if (const auto* working = side_of<WorkingSolids<dim>>(model))
+  if (const auto* working = model.work())
     return working->solid_work(context.step.begin, context.dt, velocity, mean);
   Vector impulse(mean.getMap()), without(mean.getMap());
   model.explicit_momentum(context.step.begin, context.dt, impulse);

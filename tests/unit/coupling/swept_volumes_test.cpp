@@ -15,6 +15,7 @@ namespace {
 class SoftLoop : public FakeSolid<2>, public VolumeSweeper<2> {
  public:
   explicit SoftLoop(const FakeBody<2>& body) : FakeSolid<2>({body}, {}, Tpetra::getDefaultComm()) {}
+  const VolumeSweeper<2>* sweeper() const override { return this; }
   std::vector<char> can_sweep(const Box<2>&) const override { return {1}; }
   std::vector<int> solid_of_row() const override {
     return std::vector<int>(dof_map()->getNodeNumElements(), 0);

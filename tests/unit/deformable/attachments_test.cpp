@@ -101,7 +101,7 @@ TEST(Attachments, MomentumIsThatOfAllNodesAndIsKept) {
     const SolidModel<3>& part = glued.system.model(m);
     const auto q = make_vector(part.dof_map());
     apply(*part.mass(), *part.velocity(), *q);
-    own += side_of<AuditedSolids<3>>(part)->momentum_of_each(*q)[0];
+    own += part.audit()->momentum_of_each(*q)[0];
   }
   const Momentum<3> total = glued.momentum();
   EXPECT_LE((total.linear - own.linear).norm(), 1e-13);

@@ -203,12 +203,13 @@ TEST(DeformableSolids, SweepWhatTheyAreTold) {
   const auto solids = model<3>({pair_of_bodies[0], pair_of_bodies[1], pair_of_bodies[0]});
   const double dt = 0.1, before[] = {enclosed(*solids, 0), enclosed(*solids, 1)};
   const Point<3> far = Point<3>::Constant(9), center = solids->states()[0].center_of_mass;
-  EXPECT_EQ(solids->can_sweep(Box<3>(-far, far)), (std::vector<char>{1, 1, 1}));
-  EXPECT_EQ(solids->can_sweep(Box<3>(-far, Point<3>(9, 1, 9))), (std::vector<char>{1, 0, 1}));
+  EXPECT_EQ(solids->sweeper()->can_sweep(Box<3>(-far, far)), (std::vector<char>{1, 1, 1}));
+  EXPECT_EQ(solids->sweeper()->can_sweep(Box<3>(-far, Point<3>(9, 1, 9))),
+            (std::vector<char>{1, 0, 1}));
   Vector velocity(*solids->velocity(), Teuchos::Copy);
   const Vector free(velocity, Teuchos::Copy);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  solids->sweep(dt, {0, 0.01, nan}, velocity);
+  solids->sweeper()->sweep(dt, {0, 0.01, nan}, velocity);
   solids->move(velocity, 0, dt);
   EXPECT_NEAR(enclosed(*solids, 0), before[0], 1e-14);
   EXPECT_NEAR(enclosed(*solids, 1), before[1] + 0.01, 1e-14);
@@ -220,7 +221,7 @@ TEST(DeformableSolids, SweepWithoutMovingHeldNodes) {
   const auto solids = model<2>({box("0.5, 0.5", "0.125") + material("linear") +
                                 number("Density", "1") + pinned("-1, -1", "1, -0.2", "x, y")});
   Vector velocity(solids->dof_map());
-  solids->sweep(0.1, {0.02}, velocity);
+  solids->sweeper()->sweep(0.1, {0.02}, velocity);
   const auto along = solids->nodes().owned(velocity);
   for (std::size_t i = 0; i < along.size(); ++i) {
     EXPECT_EQ(along[i].isZero(),

@@ -1,9 +1,9 @@
-// Meshes with stress and strain for frames.
+#include "deformable/element_frames.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "deformable/deformable_solids.hpp"
 #include "output/frames.hpp"
 
 namespace lockstep {
@@ -77,44 +77,45 @@ void append_elements(const std::vector<double>& values, int n_corners, SurfaceFr
 }  // namespace
 
 template <int dim>
-void DeformableSolids<dim>::add_frames(std::vector<SurfaceFrame>& frames) const {
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const Body& body = bodies_[b];
+void add_element_frames(const ElementForces<dim>& forces, std::vector<SurfaceFrame>& frames) {
+  const BodyNodes<dim>& nodes = forces.nodes;
+  for (int b = 0; b < nodes.n_bodies(); ++b) {
+    const SoftBody& body = nodes.bodies[b];
     const int n_corners = body.closed ? dim + 1 : dim, n_nodes = body.node_end - body.node_begin;
     ElementStates states;
-    for (const auto& group : body.elements) {
+    for (const auto& group : forces.elements[b]) {
       if (group->corners().n_corners == n_corners)
-        group->add_states(x_, space_.n_owned(), states);
+        group->add_states(nodes.x, nodes.n_owned(), states);
     }
     std::vector<int> number;
-    for (int i = 0; i < space_.n_local(); ++i)
-      number.push_back(space_.original(i) - body.node_begin);
-    const std::vector<double> elements = gather_all(comm_, packed(states, n_corners, number));
+    for (int i = 0; i < nodes.space.n_local(); ++i)
+      number.push_back(nodes.space.original(i) - body.node_begin);
+    const std::vector<double> elements = gather_all(nodes.comm, packed(states, n_corners, number));
     if (elements.empty())
       continue;
     std::vector<double> mine;
-    for (int i = 0; i < space_.n_owned(); ++i) {
-      if (body_of_node_[i] != static_cast<int>(b))
+    for (int i = 0; i < nodes.n_owned(); ++i) {
+      if (nodes.body_of[i] != b)
         continue;
       mine.push_back(number[i]);
-      mine.insert(mine.end(), x_[i].data(), x_[i].data() + dim);
+      mine.insert(mine.end(), nodes.x[i].data(), nodes.x[i].data() + dim);
     }
-    const std::vector<double> nodes = gather_all(comm_, mine);
+    const std::vector<double> places = gather_all(nodes.comm, mine);
     SurfaceFrame frame;
     frame.name = body.name + " elements";
     frame.dimension = dim;
     frame.simplex_size = n_corners;
     frame.vertices.resize(std::size_t(n_nodes) * dim);
-    for (std::size_t k = 0; k < nodes.size(); k += dim + 1) {
-      std::copy_n(&nodes[k + 1], dim,
-                  frame.vertices.begin() + static_cast<std::ptrdiff_t>(nodes[k]) * dim);
+    for (std::size_t k = 0; k < places.size(); k += dim + 1) {
+      std::copy_n(&places[k + 1], dim,
+                  frame.vertices.begin() + static_cast<std::ptrdiff_t>(places[k]) * dim);
     }
     append_elements(elements, n_corners, frame);
     frames.push_back(std::move(frame));
   }
 }
 
-template void DeformableSolids<2>::add_frames(std::vector<SurfaceFrame>&) const;
-template void DeformableSolids<3>::add_frames(std::vector<SurfaceFrame>&) const;
+template void add_element_frames(const ElementForces<2>&, std::vector<SurfaceFrame>&);
+template void add_element_frames(const ElementForces<3>&, std::vector<SurfaceFrame>&);
 
 }  // namespace lockstep

@@ -1,0 +1,25 @@
+#pragma once
+#include <vector>
+
+#include "output/progress.hpp"
+#include "stepping/report/step_report.hpp"
+#include "stepping/step/components.hpp"
+
+namespace lockstep {
+
+/// Warnings of a run about steps that may not be what one wants, most of them once. Local.
+template <int dim>
+class RunWarnings {
+ public:
+  void after_step(long long step, const StepReport<dim>& report, const Components<dim>& components,
+                  const Log& log);
+
+ private:
+  void warn_of_watches(long long step, const std::vector<WatchedLiquid>& watches,
+                       const LiquidFluid<dim>& liquid, const Log& log);
+
+  bool of_viscous_step_ = false, of_stretch_ = false, of_unsettled_ = false;
+  std::vector<char> of_watch_;
+};
+
+}  // namespace lockstep
