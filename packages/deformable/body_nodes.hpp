@@ -8,7 +8,7 @@
 
 namespace lockstep {
 
-/// What of a body does not change in a run.
+/// The parts of a body that do not change in a run.
 struct SoftBody {
   std::string name;
   bool closed = true, consistent_mass = false;

@@ -131,7 +131,7 @@ void ImplicitForces<dim>::moved(Nodes before, const Nodes& velocity) {
   linearisation_ = nodes_.space.vector(halfway);
 }
 
-/// Those of S2 are halfway, for dt V / 2 = x - x(halfway) of the motion.
+/// Forces of S2 are halfway, for dt V / 2 = x - x(halfway) of the motion.
 template <int dim>
 void ImplicitForces<dim>::update() {
   linearised_ = before_.has_value();

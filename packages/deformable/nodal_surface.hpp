@@ -26,7 +26,7 @@ class NodalSurface {
   /// Puts the vertices where the nodes are; `velocity` takes them there [m/s], of all owned nodes.
   /// Collective.
   void move(const Nodes& velocity);
-  /// The same without a move; `velocity` of each vertex. Collective.
+  /// Places the vertices without a move; `velocity` of each vertex. Collective.
   void place(Nodes velocity);
 
   /// Several values of this rank's nodes at all vertices, by one message. Collective.

@@ -62,7 +62,8 @@ class HydrostaticLoads {
   /// F_h + B^T p_h - W^T M_F g of closed solids, along the axes on which the grid sees both their
   /// ends. Local.
   std::vector<AxisLoad<dim>> corrections() const;
-  std::vector<DisplacedMass<dim>> displaced_masses() const;  ///< of closed solids. Local.
+  /// Masses of fluid that closed solids displace. Local.
+  std::vector<DisplacedMass<dim>> displaced_masses() const;
 
  private:
   struct Sum {

@@ -18,7 +18,7 @@ struct HeldRow {
   std::vector<std::pair<GlobalIndex, double>>
       weights;           ///< by dof of the stack; the same on all ranks
   double velocity = 0;   ///< [m/s]
-  double impulse = 0;    ///< that the contact model finds for it [kg m/s]
+  double impulse = 0;    ///< found by the contact model [kg m/s]
   double response = 0;   ///< velocity per impulse in the model's response [1/kg]
   bool is_stiff = true;  ///< false: the solve is given its impulse and does not hold it
 };

@@ -1,5 +1,6 @@
 #include "stepping/run_warnings.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "interfaces/liquid.hpp"
@@ -32,6 +33,15 @@ void RunWarnings<dim>::after_step(long long step, const StepReport<dim>& report,
         "Step {}: prescribed solids or pinned nodes press surfaces through each other at {} "
         "places, which contact cannot prevent; let them move less, or less far in a step.",
         step, report.contact_position.n_crossings);
+  }
+  constexpr double most_left = 1e-3;  // of g dt
+  const double left = std::max(report.contact_position.residual, report.contact_velocity.residual);
+  if (left > most_left * report.dt * components.fluid->gravity().norm() && !of_contact_) {
+    of_contact_ = true;
+    log.warning(
+        "Step {}: solves and contacts still differ by {:.2g} m/s where solids touch; momentum is "
+        "kept, rest may not be. Shorter steps help. Later steps like this one are not reported.",
+        step, left);
   }
   constexpr double most_stretch = 0.01;
   if (report.stretch_beyond_limit > most_stretch && !of_stretch_) {

@@ -18,7 +18,7 @@ class RunWarnings {
   void warn_of_watches(long long step, const std::vector<WatchedLiquid>& watches,
                        const LiquidFluid<dim>& liquid, const Log& log);
 
-  bool of_viscous_step_ = false, of_stretch_ = false, of_unsettled_ = false;
+  bool of_viscous_step_ = false, of_stretch_ = false, of_unsettled_ = false, of_contact_ = false;
   std::vector<char> of_watch_;
 };
 

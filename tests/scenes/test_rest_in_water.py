@@ -1,5 +1,5 @@
-"""What lies, floats or is loaded in water at rest stays at rest, with both couplings and in both dimensions; what nothing
-lifts falls freely, and what is light never has more energy than it was let go with. Each scene but the floating boxes broke that while contact did not
+"""Bodies that lie, float or are loaded in water at rest stay at rest, with both couplings and in both dimensions; one that nothing
+lifts falls freely, and a light one never has more energy than it was let go with. Each scene but the floating boxes broke that while contact did not
 know the fluid."""
 import sys
 import tempfile
@@ -99,7 +99,7 @@ class RestInWater(unittest.TestCase):
                 self.assertLess(max(column(history, "fluid_kinetic_energy")), 30)
 
     def test_nothing_lifts_a_pile_through_floor_and_lid(self):
-        """Of twice the density of the fluid, it fell with half of gravity."""
+        """It has twice the density of the fluid, and fell with half of gravity."""
         pile = {**box((.25, 3.), (.5, .5), 1.), "Mass": 500., "Locked": ("x", "rotation")}
         del pile["Density"]
         for coupling in ("mixed face",):

@@ -74,6 +74,7 @@ class CoupledSolve {
   bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution);
   ContactReport<dim> contact_before_solve(const StepContext<dim>& context, Vector& momentum);
   RCP<Vector> impulse_at_rest(double dt) const;
+  void release(const StepContext<dim>& context, MotionWithContacts<dim>& motion);
   ContactReport<dim> decide(const StepContext<dim>& context, const ContactResponse& response,
                             Vector& velocity);
 

@@ -152,12 +152,34 @@ RCP<Vector> impulse_of(const ContactReport<dim>& contacts, const Vector& velocit
   return impulse;
 }
 
+/// Velocities from row 2 without K, C V = q + J^T l~ - B^T p: its round-off is K times larger, and
+/// momentum would be off by that.
+template <int dim>
+void CoupledSolve<dim>::release(const StepContext<dim>& context, MotionWithContacts<dim>& motion) {
+  system_.hold(Teuchos::null);
+  if (motion.contact.held.empty())
+    return;
+  CoupledSolution& solution = motion.solution;
+  const BlockSystem& blocks = system_.blocks(context.dt);
+  const RCP<Vector> row = system_.lumped_momentum(*solution.momentum);
+  system_.subtract_given(context.dt, context.constraints, *row);
+  if (!solution.gas_momentum.is_null())
+    row->update(1, *solution.gas_momentum, 1);
+  context.constraints.restrict(*row);
+  blocks.coupling_transposed()->apply(*solution.unknowns.pressure, *row, Teuchos::NO_TRANS, -1, 1);
+  const auto unknowns = make_vector(components_.solids->map());
+  apply(*exact_inverse(blocks.solid_block(), "solids in contact"), *row, *unknowns);
+  solution.unknowns.solid = unknowns;
+  solution.velocity = rcp(new Vector(*unknowns, Teuchos::Copy));
+  context.constraints.expand(*solution.velocity);
+}
+
 /// In turn the contact model decides, in the response R of the solids with the fluid on them, which
 /// contacts push and with what impulses l+, and a solve holds those,
 ///
-///   (C + J^T K J) V + B^T p = q + J^T (l + K b),   l~ = l - K (J V - b),
+///   (C + J^T K J) V + B^T p = q + J^T (l + K b),   l~ = l - K (J V - b).
 ///
-/// so that C V + B^T p = q + J^T l~ exactly. The first decision is about what the solve gives in
+/// Then C V + B^T p = q + J^T l~ exactly. The first decision is about what the solve gives in
 /// fluid at rest, so that what lies takes one solve. They agree when l+ for the velocity V - R^-1
 /// J^T l~ is l~.
 template <int dim>
@@ -210,7 +232,7 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
       best = held;
     if (held.contact.residual <= tolerance * scale || k == most_solves) {
       best.contact.n_solves = best.contact.held.empty() ? 0 : k;
-      system_.hold(Teuchos::null);
+      release(context, best);
       return best;
     }
     decision = std::move(next);
