@@ -14,7 +14,7 @@ or joint, and at least a tenth of the greatest of the same unit in the table and
 grid resolves (1 of what has no unit and of angles). So what is zero by symmetry is measured against what could be there. A number in one run alone (a row, a column, one of them nan) counts as infinite. Columns of whole
 numbers without a unit, those of contacts say, are counts: they are the same or not."""
 OF_CONTACT = "Contact/Tolerance=1e-12"
-OF_THE_SOLVING = re.compile(r"(iterations|residual|error|incompatibility|divergence|seconds)$")
+OF_THE_SOLVING = re.compile(r"(iterations|solves|residual|error|incompatibility|divergence|seconds)$")
 KEYS = ("step", "name")
 FORMER = re.compile(r'\{"history.csv", "(\w+)",\s*"is called \\"(\w+)\\" now"\}')
 PART = 0.1

@@ -34,7 +34,7 @@ void RunWarnings<dim>::after_step(long long step, const StepReport<dim>& report,
         "places, which contact cannot prevent; let them move less, or less far in a step.",
         step, report.contact_position.n_crossings);
   }
-  constexpr double most_left = 1e-3;  // of g dt
+  constexpr double most_left = 1e-3;  // times g dt
   const double left = std::max(report.contact_position.residual, report.contact_velocity.residual);
   if (left > most_left * report.dt * components.fluid->gravity().norm() && !of_contact_) {
     of_contact_ = true;

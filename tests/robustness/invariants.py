@@ -38,7 +38,7 @@ ROUND_OFF = 1e-9
 # becomes one, and leaves so much of itself.
 NO_FLOW = 1e-3
 # Columns in which a number's size says nothing of an error.
-COUNTS = ("step", "time", "name", "wall_seconds", "contacts", "deepest_overlap", "clamped_elements")
+COUNTS = ("step", "time", "name", "wall_seconds", "contacts", "deepest_overlap", "contact_solves", "contact_residual", "clamped_elements")
 
 
 def columns(rows, prefix):

@@ -93,6 +93,10 @@ StepReport<dim> numbered_report() {
   report.n_clamped_elements = static_cast<GlobalIndex>(++number);
   report.contact_position.n_contacts = static_cast<int>(++number);
   report.contact_velocity.n_contacts = static_cast<int>(++number);
+  report.contact_position.n_solves = static_cast<int>(++number);
+  report.contact_velocity.n_solves = static_cast<int>(++number);
+  report.contact_position.residual = ++number;
+  report.contact_velocity.residual = ++number;
   for (SolveReport* solve : {&report.s1, &report.f2, &report.s2})
     *solve = next_solve(number);
   std::swap(report.f2.pressure_residual, report.f2.solid_residual);  // the larger one counts
@@ -167,6 +171,8 @@ Texts expected_history(const StepReport<dim>& report) {
       {"f2_incompatibility", report.incompatibility_f2},
       {"contacts", report.contact_position.n_contacts},
       {"deepest_overlap", report.contact_position.deepest_overlap},
+      {"contact_solves", report.contact_position.n_solves + report.contact_velocity.n_solves},
+      {"contact_residual", report.contact_velocity.residual},  // the larger one
       {"clamped_elements", double(report.n_clamped_elements)}};
   for (const auto& [name, value] : numbers)
     texts[name] = text_of(value);
