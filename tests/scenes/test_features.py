@@ -107,7 +107,7 @@ FEATURES = [
     ("semi-implicit surface tension", WATER, surface({"Surface Tension": .07, "Time Integration": "semi-implicit"}),
      FIRST_PRESSURE | solves("F3 forces", 1, STEPS)),
     ("a watched place", WATER, surface({"Watch": {"Floor": {"Point": (.5, .1)}}}),
-     names("column", "watch_Floor_volume", "watch_Floor_volume_target", "watch_Floor_leak") | fields("watched_places")),
+     names("column", "watch_Floor_volume", "watch_Floor_volume_target") | fields("watched_places")),
 ]
 
 
