@@ -25,7 +25,8 @@ HydrostaticLoads<dim>::HydrostaticLoads(const FluidDiscretization<dim>& fluid,
     levels = fluid.liquid()->levels_at_solids();
   for (int s = 0; s < static_cast<int>(pressures_.size()); ++s) {
     const SolidDescription& solid = surface.solids()[s];
-    if ((!solid.closed && !solid.rigid) || (has_level_ && !levels[s].known))
+    if (solid.simplex_begin == solid.simplex_end || (!solid.closed && !solid.rigid) ||
+        (has_level_ && !levels[s].known))
       continue;
     if (solid.closed && has_level_ && !levels[s].is_wet)
       continue;  // it is in the air

@@ -31,7 +31,8 @@ class LevelFinder {
     const int n_solids = static_cast<int>(surface_.solids().size());
     std::vector<Heights> heights(n_solids);
     for (int s = 0; s < n_solids; ++s)
-      look_around(s, heights[s]);
+      if (surface_.solids()[s].simplex_begin < surface_.solids()[s].simplex_end)
+        look_around(s, heights[s]);
     sum(heights);
     // Below the surface, or parted from it, that of all the water is the best there is.
     std::vector<Heights> all(1);
