@@ -110,7 +110,9 @@ template <int dim>
 bool HydrostaticLoads<dim>::is_covered(int solid, int axis, const Sum& sum) const {
   constexpr double round_off = 1e-9;
   const RestPressure<dim>& pressure = pressures_[solid];
-  if (!pressure.pierces && std::abs(sum.open_area) > round_off * sum.area)
+  // Along a level axis water at rest wets both ends of a solid alike, a wave does not.
+  const bool is_level = std::abs(gravity_[axis]) <= round_off * gravity_.norm();
+  if ((!pressure.pierces || is_level) && std::abs(sum.open_area) > round_off * sum.area)
     return false;
   double area = 2;  // two ends
   for (int a = 0; a < dim; ++a)
