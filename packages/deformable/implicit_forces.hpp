@@ -7,7 +7,7 @@
 
 namespace lockstep {
 
-/// Where on its way a step takes the forces, and D(dt), their part in the solve.
+/// The place on its way at which a step takes the forces, and D(dt), their part in the solve.
 ///
 /// Explicit elastic forces are those at the present positions. Implicit ones make, for one mode of
 /// stiffness m omega^2 and a = omega dt, b = 1 + a^2/2, together with the step the map

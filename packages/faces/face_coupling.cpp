@@ -156,7 +156,7 @@ void FaceCoupling<dim>::find_hydrostatic_loads(
     const std::function<void(HydrostaticLoads<dim>&)>& add) {
   if (surface_->empty() || fluid.gravity().isZero(0))
     return;
-  // Where no rank has a face, solids are smaller than cells.
+  // No rank has a face if solids are smaller than cells.
   const double at_faces = max_all(solids.comm(), volumes_.empty() ? 0 : volumes_.front().density);
   const double density =
       at_faces > 0 ? at_faces : fluid.density(surface_->bounds_of_solid(0).center());

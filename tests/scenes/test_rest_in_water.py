@@ -46,7 +46,7 @@ class RestInWater(unittest.TestCase):
         for name in [name for name in ("vx", "vy", "vz") if name in bodies[0]]:
             self.assertLess(max(map(abs, column(bodies, name))), speed, name)
         self.assertLess(max(column(history, "fluid_kinetic_energy")), energy)
-        self.assertLess(max(column(history, "momentum_error")), 1e-12)
+        self.assertLess(max(column(history, "momentum_error")), 1e-14)
 
     def test_a_block_lies_on_the_floor(self):
         """It moved at .6 m/s, ratio .5, and at .15 m/s, ratio 2."""

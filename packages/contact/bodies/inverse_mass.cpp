@@ -72,26 +72,42 @@ RCP<Vector> distributed(const SolidSystem<dim>& system, const std::vector<double
   return vector;
 }
 
+/// Rows by id of the triplets of all ranks, of unknowns alone. Collective.
 template <int dim>
-InverseMass replicated_inverse_mass(const SolidSystem<dim>& system) {
-  InverseMass result;
-  const std::vector<double> all = gather_all(system.comm(), own_triplets(system, result.exact));
+std::vector<std::vector<std::pair<int, double>>> replicated_rows(const SolidSystem<dim>& system,
+                                                                 const std::vector<double>& mine) {
+  const std::vector<double> all = gather_all(system.comm(), mine);
   std::vector<double> free(system.n_unknowns(), 1);
   if (!system.reduction().is_identity())
     free = replicated(system, *system.reduction().unknowns());
   const auto n = static_cast<double>(free.size());
-  result.rows.resize(free.size());
+  std::vector<std::vector<std::pair<int, double>>> rows(free.size());
   for (std::size_t k = 0; k + 2 < all.size(); k += 3) {
     if (all[k] >= n || all[k + 1] >= n)
       continue;
     const auto row = static_cast<std::size_t>(all[k]);
     const auto column = static_cast<std::size_t>(all[k + 1]);
     if (free[row] != 0 && free[column] != 0)
-      result.rows[row].push_back({static_cast<int>(column), all[k + 2]});
+      rows[row].push_back({static_cast<int>(column), all[k + 2]});
   }
+  return rows;
+}
+
+template <int dim>
+InverseMass replicated_inverse_mass(const SolidSystem<dim>& system) {
+  InverseMass result;
+  const std::vector<double> mine = own_triplets(system, result.exact);
+  result.rows = replicated_rows(system, mine);
   return result;
 }
 
+template <int dim>
+InverseMass replicated_inverse(const SolidSystem<dim>& system, const CrsMatrix& inverse) {
+  return {true, replicated_rows(system, triplets_of(inverse))};
+}
+
+template InverseMass replicated_inverse<2>(const SolidSystem<2>&, const CrsMatrix&);
+template InverseMass replicated_inverse<3>(const SolidSystem<3>&, const CrsMatrix&);
 template InverseMass replicated_inverse_mass<2>(const SolidSystem<2>&);
 template InverseMass replicated_inverse_mass<3>(const SolidSystem<3>&);
 template std::vector<double> replicated<2>(const SolidSystem<2>&, const Vector&);

@@ -18,6 +18,10 @@ struct InverseMass {
 template <int dim>
 InverseMass replicated_inverse_mass(const SolidSystem<dim>& system);
 
+/// Rows, as above, of another inverse on the unknowns than that of M_S. Collective.
+template <int dim>
+InverseMass replicated_inverse(const SolidSystem<dim>& system, const CrsMatrix& inverse);
+
 /// A stacked vector on every rank, by id, without padding; all unknowns are held, so solids of many
 /// dofs cost memory here. Collective.
 template <int dim>

@@ -76,9 +76,14 @@ std::vector<HeldRow> ImpulseSolver<dim>::held_rows() const {
   const auto add = [&](const Row& row, const Point<dim>& direction, double velocity, double impulse,
                        double response) {
     HeldRow one{{}, velocity - direction.dot(row.prescribed), impulse, response};
-    for (int k = row.begin; k < row.end; ++k)
-      if (const double weight = jacobian_[k].coefficient.dot(direction); weight != 0)
-        one.weights.emplace_back(dof_of(jacobian_[k].id), weight);
+    for (int k = row.begin; k < row.end; ++k) {
+      const int dof = dof_of(jacobian_[k].id);
+      const double weight = jacobian_[k].coefficient.dot(direction);
+      if (mobility_.is_held(dof))
+        one.velocity -= weight * velocity_[dof];
+      else if (weight != 0)
+        one.weights.emplace_back(dof, weight);
+    }
     held.push_back(std::move(one));
   };
   for (const Row& row : rows_) {
@@ -99,7 +104,8 @@ typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::sliding_impulse() const {
       continue;
     const Point<dim> friction = row.tangents * row.tangent_impulse;
     for (int k = row.begin; k < row.end; ++k)
-      impulses.emplace_back(dof_of(jacobian_[k].id), jacobian_[k].coefficient.dot(friction));
+      if (const int dof = dof_of(jacobian_[k].id); !mobility_.is_held(dof))
+        impulses.emplace_back(dof, jacobian_[k].coefficient.dot(friction));
   }
   return impulses;
 }

@@ -42,9 +42,9 @@ class ImpulseSolver {
   double limit_impulse(int number) const { return limits_.impulse(number); }
   /// J^T impulses, by id: on the dofs of the surfaces themselves, combinations or not.
   std::vector<double> generalized_impulse() const;
-  /// Rows of contacts that push, for a coupled solve to hold; with a response only.
+  /// Rows of contacts that push, for a coupled solve to hold.
   std::vector<HeldRow> held_rows() const;
-  /// Impulses, by dof, of the friction of contacts that slide; with a response only.
+  /// Impulses, by dof, of the friction of contacts that slide.
   Terms sliding_impulse() const;
   /// Impulse of walls and prescribed solids on the others.
   Momentum<dim> external_impulse() const;

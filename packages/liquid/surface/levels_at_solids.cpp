@@ -12,7 +12,8 @@ constexpr int reach_of_levels = 2;
 /// Heights of the places where liquid meets air, around one solid or all of them.
 struct Heights {
   double sum = 0, n = 0;
-  double n_air = 0, n_wet = 0;  ///< cells of air near the solid, of liquid at it
+  double n_air = 0;  ///< cells of air near the solid
+  double n_wet = 0;  ///< ranks that have a cell of liquid at it
 };
 
 template <int dim>
@@ -69,9 +70,9 @@ class LevelFinder {
     for_each_cell_in(around, [&](int cell) {
       const Point<dim> center = grid_.center(cell);
       heights.n_air += cells_[cell] == CellState::air ? 1 : 0;
-      if (cells_[cell] == CellState::fluid && beside.contains(center) &&
+      if (heights.n_wet == 0 && cells_[cell] == CellState::fluid && beside.contains(center) &&
           (is_alone || is_in_sight(solid, center)))
-        ++heights.n_wet;
+        heights.n_wet = 1;
       for_each_place(cell, [&](const Point<dim>& x) {
         if (is_alone || is_in_sight(solid, x))
           add(x, heights);

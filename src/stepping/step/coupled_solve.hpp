@@ -74,6 +74,10 @@ class CoupledSolve {
   bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution);
   ContactReport<dim> contact_before_solve(const StepContext<dim>& context, Vector& momentum);
   RCP<Vector> impulse_at_rest(double dt) const;
+  void solve_held(const StepContext<dim>& context, const Vector& momentum,
+                  const BlockVector* nearby, MotionWithContacts<dim>& motion);
+  ContactReport<dim> compare(const StepContext<dim>& context, const ContactResponse& response,
+                             MotionWithContacts<dim>& motion, double& scale);
   void release(const StepContext<dim>& context, MotionWithContacts<dim>& motion);
   ContactReport<dim> decide(const StepContext<dim>& context, const ContactResponse& response,
                             Vector& velocity);

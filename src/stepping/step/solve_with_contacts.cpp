@@ -18,7 +18,7 @@ constexpr double stiffness_factor = 1e5;
 /// Velocity by which solve and contact model may differ, over that which gravity and impacts ask
 /// for [1].
 constexpr double tolerance = 1e-5;
-constexpr int most_solves = 10;
+constexpr int most_solves = 10, most_without_gain = 3;
 
 double stiffness_of(const HeldRow& row) {
   return row.is_stiff ? stiffness_factor / row.response : 0;
@@ -60,6 +60,20 @@ template <int dim>
 void set_stiff(bool is_stiff, ContactReport<dim>& contacts) {
   for (HeldRow& row : contacts.held)
     row.is_stiff = is_stiff;
+}
+
+/// Impulses that the contacts of a solve have given: J^T l~ with l~ = l - K (J V - b). Collective.
+template <int dim>
+RCP<Vector> impulse_of(const ContactReport<dim>& contacts, const Vector& velocity,
+                       const SolidSystem<dim>& solids) {
+  const auto impulse = make_vector(solids.map());
+  add_to(contacts.sliding, 1, *impulse);
+  const std::vector<double> values = values_of(contacts.held, velocity, solids.comm());
+  for (std::size_t r = 0; r < values.size(); ++r) {
+    const HeldRow& row = contacts.held[r];
+    add_to(row.weights, row.impulse - stiffness_of(row) * (values[r] - row.velocity), *impulse);
+  }
+  return impulse;
 }
 
 double largest(const std::vector<double>& values) {
@@ -138,20 +152,6 @@ void CoupledSolve<dim>::hold(const ContactReport<dim>& contacts, Vector& momentu
     add_to(row.weights, row.impulse + stiffness_of(row) * row.velocity, momentum);
 }
 
-/// Impulses that the contacts of a solve have given: J^T l~ with l~ = l - K (J V - b). Collective.
-template <int dim>
-RCP<Vector> impulse_of(const ContactReport<dim>& contacts, const Vector& velocity,
-                       const SolidSystem<dim>& solids) {
-  const auto impulse = make_vector(solids.map());
-  add_to(contacts.sliding, 1, *impulse);
-  const std::vector<double> values = values_of(contacts.held, velocity, solids.comm());
-  for (std::size_t r = 0; r < values.size(); ++r) {
-    const HeldRow& row = contacts.held[r];
-    add_to(row.weights, row.impulse - stiffness_of(row) * (values[r] - row.velocity), *impulse);
-  }
-  return impulse;
-}
-
 /// Velocities from row 2 without K, C V = q + J^T l~ - B^T p: its round-off is K times larger, and
 /// momentum would be off by that.
 template <int dim>
@@ -174,6 +174,56 @@ void CoupledSolve<dim>::release(const StepContext<dim>& context, MotionWithConta
   context.constraints.expand(*solution.velocity);
 }
 
+/// A solve that holds the contacts of `motion`, or that is given their impulses where it cannot:
+/// what it takes to hold solids that closed fluid does not let meet is beyond round-off.
+template <int dim>
+void CoupledSolve<dim>::solve_held(const StepContext<dim>& context, const Vector& momentum,
+                                   const BlockVector* nearby, MotionWithContacts<dim>& motion) {
+  const auto attempt = [&] {
+    const auto pushed = rcp(new Vector(momentum, Teuchos::Copy));
+    hold(motion.contact, *pushed);
+    motion.solution = solve(context, pushed, context.solve, nearby);
+  };
+  try {
+    attempt();
+  } catch (const SolveError&) {
+    if (motion.contact.held.empty() || !motion.contact.held.front().is_stiff)
+      throw;
+    set_stiff(false, motion.contact);
+    attempt();
+  }
+  const auto& solids = *components_.solids;
+  const RCP<const Vector> impulse = impulse_of(motion.contact, *motion.solution.velocity, solids);
+  motion.solution.momentum = rcp(new Vector(momentum, Teuchos::Copy));
+  motion.solution.momentum->update(1, *impulse, 1);
+  motion.contact.impulse = impulse;
+  motion.contact.external_impulse = solids.momentum(*impulse);
+}
+
+/// Decides anew about V - R^-1 J^T l~, and returns the contacts found. The residual of `motion`
+/// becomes the velocity at contacts by which both differ, over `scale`: that which gravity and
+/// contacts ask for, both in m/s.
+template <int dim>
+ContactReport<dim> CoupledSolve<dim>::compare(const StepContext<dim>& context,
+                                              const ContactResponse& response,
+                                              MotionWithContacts<dim>& motion, double& scale) {
+  Vector free(*motion.solution.velocity, Teuchos::Copy);
+  Vector reduced(*motion.contact.impulse, Teuchos::Copy);
+  context.constraints.restrict(reduced);
+  apply(*response(), reduced, free, -1, 1);
+  context.constraints.expand(free);
+  Vector decided(free, Teuchos::Copy);
+  ContactReport<dim> next = decide(context, response, decided);
+  free.update(1, decided, -1);
+  decided.update(-1, *motion.solution.velocity, 1);
+  const auto& comm = components_.solids->comm();
+  motion.contact.residual = std::max(largest(values_of(motion.contact.held, decided, comm)),
+                                     largest(values_of(next.held, decided, comm)));
+  scale = std::max(context.dt * components_.fluid->gravity().norm(),
+                   largest(values_of(next.held, free, comm)));
+  return next;
+}
+
 /// In turn the contact model decides, in the response R of the solids with the fluid on them, which
 /// contacts push and with what impulses l+, and a solve holds those,
 ///
@@ -181,62 +231,32 @@ void CoupledSolve<dim>::release(const StepContext<dim>& context, MotionWithConta
 ///
 /// Then C V + B^T p = q + J^T l~ exactly. The first decision is about what the solve gives in
 /// fluid at rest, so that what lies takes one solve. They agree when l+ for the velocity V - R^-1
-/// J^T l~ is l~.
+/// J^T l~ is l~. Contacts that bounce in one decision and not in the next may never agree: the best
+/// of the last solves counts.
 template <int dim>
 MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext<dim>& context,
                                                                const RCP<const Vector>& momentum) {
-  const auto& solids = *components_.solids;
   const ContactResponse response = contact_response(context.dt);
-  ContactReport<dim> decision = expected_contacts(context, *momentum, response);
-  MotionWithContacts<dim> best;
+  MotionWithContacts<dim> held, best;
+  held.contact = expected_contacts(context, *momentum, response);
   bool is_stiff = true;
-  for (int k = 1;; ++k) {
-    MotionWithContacts<dim> held;
-    const auto pushed = rcp(new Vector(*momentum, Teuchos::Copy));
-    hold(decision, *pushed);
-    const BlockVector* nearby = k > 1 ? &best.solution.unknowns : nullptr;
-    try {
-      held.solution = solve(context, pushed, context.solve, nearby);
-    } catch (const SolveError&) {
-      if (decision.held.empty() || !is_stiff)
-        throw;
-      // Closed fluid does not let solids meet: what it takes to hold them there is beyond
-      // round-off.
-      is_stiff = false;
-      set_stiff(false, decision);
-      pushed->update(1, *momentum, 0);
-      hold(decision, *pushed);
-      held.solution = solve(context, pushed, context.solve, nearby);
-    }
-    const RCP<const Vector> impulse = impulse_of(decision, *held.solution.velocity, solids);
-    held.solution.momentum = rcp(new Vector(*momentum, Teuchos::Copy));
-    held.solution.momentum->update(1, *impulse, 1);
-    held.contact = decision;
-    held.contact.impulse = impulse;
-    held.contact.external_impulse = solids.momentum(*impulse);
-
-    Vector free(*held.solution.velocity, Teuchos::Copy), reduced(*impulse, Teuchos::Copy);
-    context.constraints.restrict(reduced);
-    apply(*response(), reduced, free, -1, 1);
-    context.constraints.expand(free);
-    Vector change(free, Teuchos::Copy);
-    ContactReport<dim> next = decide(context, response, change);
-    Vector difference(change, Teuchos::Copy);
-    difference.update(-1, *held.solution.velocity, 1);
-    change.update(-1, free, 1);
-    held.contact.residual = std::max(largest(values_of(decision.held, difference, solids.comm())),
-                                     largest(values_of(next.held, difference, solids.comm())));
-    const double scale = std::max(context.dt * components_.fluid->gravity().norm(),
-                                  largest(values_of(next.held, change, solids.comm())));
+  for (int k = 1, last_gain = 1;; ++k) {
+    set_stiff(is_stiff, held.contact);
+    solve_held(context, *momentum, k > 1 ? &best.solution.unknowns : nullptr, held);
+    is_stiff = is_stiff && (held.contact.held.empty() || held.contact.held.front().is_stiff);
+    double scale = 0;
+    ContactReport<dim> next = compare(context, response, held, scale);
+    if (k == 1 || held.contact.residual < 0.5 * best.contact.residual)
+      last_gain = k;
     if (k == 1 || held.contact.residual < best.contact.residual)
       best = held;
-    if (held.contact.residual <= tolerance * scale || k == most_solves) {
+    if (best.contact.residual <= tolerance * scale || k - last_gain == most_without_gain ||
+        k == most_solves) {
       best.contact.n_solves = best.contact.held.empty() ? 0 : k;
       release(context, best);
       return best;
     }
-    decision = std::move(next);
-    set_stiff(is_stiff, decision);
+    held.contact = std::move(next);
   }
 }
 
