@@ -16,11 +16,10 @@ class SolidSystem;
 /// `velocity`. A coupled solve holds it.
 struct HeldRow {
   std::vector<std::pair<GlobalIndex, double>>
-      weights;           ///< by dof of the stack; the same on all ranks
-  double velocity = 0;   ///< [m/s]
-  double impulse = 0;    ///< found by the contact model [kg m/s]
-  double response = 0;   ///< velocity per impulse in the model's response [1/kg]
-  bool is_stiff = true;  ///< false: the solve is given its impulse and does not hold it
+      weights;          ///< by dof of the stack; the same on all ranks
+  double velocity = 0;  ///< [m/s]
+  double impulse = 0;   ///< found by the contact model [kg m/s]
+  double response = 0;  ///< velocity per impulse in the model's response [1/kg]
 };
 
 /// Result of one resolution of contacts.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/errors.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "solve/soft/exact_inverse.hpp"
 #include "stepping/step/coupled_solve.hpp"
@@ -21,7 +20,7 @@ constexpr double tolerance = 1e-5;
 constexpr int most_solves = 10, most_without_gain = 3;
 
 double stiffness_of(const HeldRow& row) {
-  return row.is_stiff ? stiffness_factor / row.response : 0;
+  return stiffness_factor / row.response;
 }
 
 /// J^T K J on the map of the stack. Collective.
@@ -54,12 +53,6 @@ std::vector<double> values_of(const std::vector<HeldRow>& rows, const Vector& ve
         values[k] += weight * data[local];
   sum_all(comm, values.data(), static_cast<int>(values.size()));
   return values;
-}
-
-template <int dim>
-void set_stiff(bool is_stiff, ContactReport<dim>& contacts) {
-  for (HeldRow& row : contacts.held)
-    row.is_stiff = is_stiff;
 }
 
 /// Impulses that the contacts of a solve have given: J^T l~ with l~ = l - K (J V - b). Collective.
@@ -174,24 +167,13 @@ void CoupledSolve<dim>::release(const StepContext<dim>& context, MotionWithConta
   context.constraints.expand(*solution.velocity);
 }
 
-/// A solve that holds the contacts of `motion`, or that is given their impulses where it cannot:
-/// what it takes to hold solids that closed fluid does not let meet is beyond round-off.
+/// A solve that holds the contacts of `motion`, and the impulses that they give in it.
 template <int dim>
 void CoupledSolve<dim>::solve_held(const StepContext<dim>& context, const Vector& momentum,
                                    const BlockVector* nearby, MotionWithContacts<dim>& motion) {
-  const auto attempt = [&] {
-    const auto pushed = rcp(new Vector(momentum, Teuchos::Copy));
-    hold(motion.contact, *pushed);
-    motion.solution = solve(context, pushed, context.solve, nearby);
-  };
-  try {
-    attempt();
-  } catch (const SolveError&) {
-    if (motion.contact.held.empty() || !motion.contact.held.front().is_stiff)
-      throw;
-    set_stiff(false, motion.contact);
-    attempt();
-  }
+  const auto pushed = rcp(new Vector(momentum, Teuchos::Copy));
+  hold(motion.contact, *pushed);
+  motion.solution = solve(context, pushed, context.solve, nearby);
   const auto& solids = *components_.solids;
   const RCP<const Vector> impulse = impulse_of(motion.contact, *motion.solution.velocity, solids);
   motion.solution.momentum = rcp(new Vector(momentum, Teuchos::Copy));
@@ -239,11 +221,8 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
   const ContactResponse response = contact_response(context.dt);
   MotionWithContacts<dim> held, best;
   held.contact = expected_contacts(context, *momentum, response);
-  bool is_stiff = true;
   for (int k = 1, last_gain = 1;; ++k) {
-    set_stiff(is_stiff, held.contact);
     solve_held(context, *momentum, k > 1 ? &best.solution.unknowns : nullptr, held);
-    is_stiff = is_stiff && (held.contact.held.empty() || held.contact.held.front().is_stiff);
     double scale = 0;
     ContactReport<dim> next = compare(context, response, held, scale);
     if (k == 1 || held.contact.residual < 0.5 * best.contact.residual)
