@@ -26,6 +26,18 @@ Point<dim> FluxCoupling<dim>::open_center(const ControlVolume<dim>& volume,
   return open_center_of<dim>(volume, face_shares<dim>(volume, surface, options_.weights).all);
 }
 
+namespace {
+/// In a contact patch the solid whose cell is beside it has the whole face.
+template <int dim>
+FaceShares<dim> shares_at_patch(const ControlVolume<dim>& volume,
+                                const SurfaceSnapshot<dim>& surface) {
+  FaceShares<dim> shares;
+  const int solid = std::max(volume.sides[0].solid, volume.sides[1].solid);
+  shares.all.push_back({1, surface.closest_on_solid(volume.center, solid), solid, volume.center});
+  return shares;
+}
+}  // namespace
+
 template <int dim>
 void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
                                  const SolidSystem<dim>& solids,
@@ -35,7 +47,8 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   const LiquidFluid<dim>* liquid = fluid.liquid();
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
-    shares_.push_back(face_shares<dim>(volume, surface, options_.weights));
+    shares_.push_back(volume.touches_patch() ? shares_at_patch<dim>(volume, surface)
+                                             : face_shares<dim>(volume, surface, options_.weights));
     masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
     if (volume.only_gas())
       masses_[f] = 0;

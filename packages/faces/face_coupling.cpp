@@ -4,6 +4,7 @@
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
 #include <cmath>
+#include <map>
 
 #include "linear/matrix_sum.hpp"
 #include "linear/overlap.hpp"
@@ -16,6 +17,7 @@ void FaceCoupling<dim>::take_volumes(const FluidDiscretization<dim>& fluid,
                                      const SurfaceSnapshot<dim>& surface) {
   surface_ = &surface;
   volumes_ = fluid.coupled_volumes();
+  patches_ = fluid.contact_patches();
   masses_.assign(volumes_.size(), 0);
   prescribed_velocity_.assign(volumes_.size(), 0);
   coupling_transposed_ = Teuchos::null;
@@ -39,32 +41,66 @@ template <int dim>
 void FaceCoupling<dim>::assemble_coupling(const SolidSystem<dim>& solids) {
   solid_import_ = import_of(weights_.dofs, solids.map());
   std::vector<Triplet> coupling;
+  std::vector<GlobalIndex> dofs_at_patches;
+  std::vector<double> rows_of_patches;  // a node and a value for each of these dofs
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k) {
       const GlobalIndex dof = weights_.dofs[weights_.columns[k]];
       for (int side = 0; side < 2; ++side) {
         const GlobalIndex unknown = volumes_[f].sides[side].unknown;
+        const double value = push(f, side) * weights_.values[k];
         if (unknown != no_index)
-          coupling.push_back({dof, unknown, push(f, side) * weights_.values[k]});
+          coupling.push_back({dof, unknown, value});
+        if (const int node = volumes_[f].sides[side].patch; node >= 0) {
+          dofs_at_patches.push_back(dof);
+          rows_of_patches.insert(rows_of_patches.end(), {static_cast<double>(node), value});
+        }
       }
     }
   }
+  if (patches_)
+    add_drained_rows(gather_all(solids.comm(), dofs_at_patches),
+                     gather_all(solids.comm(), rows_of_patches), coupling);
   coupling_transposed_ =
       assemble_triplets(std::move(coupling), solids.map(), pressure_import_->getSourceMap());
+}
+
+/// Adds what each dof pushes out of patches to its row of B^T: once, not on every rank.
+template <int dim>
+void FaceCoupling<dim>::add_drained_rows(const std::vector<GlobalIndex>& dofs,
+                                         const std::vector<double>& nodes_and_values,
+                                         std::vector<Triplet>& coupling) const {
+  std::map<GlobalIndex, std::vector<double>> pushed;
+  for (std::size_t k = 0; k < dofs.size(); ++k) {
+    std::vector<double>& at_nodes = pushed[dofs[k]];
+    at_nodes.resize(patches_->n_nodes(), 0);
+    at_nodes[static_cast<std::size_t>(nodes_and_values[2 * k])] += nodes_and_values[2 * k + 1];
+  }
+  const Map& unknowns = *pressure_import_->getSourceMap();
+  for (const auto& [dof, at_nodes] : pushed)
+    for (const auto& [unknown, value] : patches_->drained(at_nodes))
+      if (unknowns.isNodeGlobalElement(unknown))
+        coupling.push_back({dof, unknown, value});
 }
 
 template <int dim>
 void FaceCoupling<dim>::add_divergence(const std::vector<double>& coupled_velocity,
                                        Vector& rhs) const {
   Vector overlap(pressure_import_->getTargetMap());
+  std::vector<double> at_nodes(patches_ ? patches_->n_nodes() : 0, 0);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     for (int side = 0; side < 2; ++side) {
+      const double flux = push(f, side) * coupled_velocity[f];
       const GlobalIndex unknown = volumes_[f].sides[side].unknown;
       if (unknown != no_index)
-        overlap.sumIntoGlobalValue(unknown, push(f, side) * coupled_velocity[f]);
+        overlap.sumIntoGlobalValue(unknown, flux);
+      if (const int node = volumes_[f].sides[side].patch; node >= 0)
+        at_nodes[node] += flux;
     }
   }
   add_overlap(overlap, *pressure_import_, rhs);
+  if (patches_)
+    patches_->add_drained(std::move(at_nodes), rhs);
 }
 
 template <int dim>
@@ -78,12 +114,16 @@ std::vector<double> FaceCoupling<dim>::pushes(const Vector& scaled_pressure,
   Vector beside(pressure_import_->getTargetMap());
   beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
   const auto pressure = beside.getData();
+  const std::vector<double> at_nodes =
+      patches_ ? patches_->extended(scaled_pressure) : std::vector<double>();
   std::vector<double> result(volumes_.size(), 0);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     for (int side = 0; side < 2; ++side) {
       const GlobalIndex unknown = volumes_[f].sides[side].unknown;
       if (unknown != no_index)
         result[f] += push(f, side) * pressure[beside.getMap()->getLocalElement(unknown)];
+      if (const int node = volumes_[f].sides[side].patch; node >= 0)
+        result[f] += push(f, side) * at_nodes[node];
     }
   }
   add_pushes_of_gas(gas_pressure, result);

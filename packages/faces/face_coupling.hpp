@@ -68,9 +68,10 @@ class FaceCoupling : public Coupling<dim>,
   const SurfaceSnapshot<dim>* surface_ =
       nullptr;  ///< snapshot of the last `assemble`; the caller keeps it alive
   std::vector<ControlVolume<dim>> volumes_;
-  CouplingWeights weights_;                  ///< W
-  std::vector<double> masses_;               ///< M_F
-  std::vector<double> prescribed_velocity_;  ///< W_k V_k
+  std::shared_ptr<const HarmonicExtension> patches_;  ///< contact patches; null: none
+  CouplingWeights weights_;                           ///< W
+  std::vector<double> masses_;                        ///< M_F
+  std::vector<double> prescribed_velocity_;           ///< W_k V_k
   RCP<const CrsMatrix> coupling_transposed_, added_mass_;
   RCP<Import> solid_import_;     ///< solid map -> this rank's `weights_.dofs`
   RCP<Import> pressure_import_;  ///< pressure map -> unknowns beside this rank's coupled volumes
@@ -79,6 +80,9 @@ class FaceCoupling : public Coupling<dim>,
   /// result[f] += push of gas bubbles with these p̂, with the sign of `pushes`; empty: nothing.
   void add_pushes_of_gas(const std::vector<double>& scaled_pressure,
                          std::vector<double>& result) const;
+  void add_drained_rows(const std::vector<GlobalIndex>& dofs,
+                        const std::vector<double>& nodes_and_values,
+                        std::vector<Triplet>& coupling) const;
 
   std::vector<double> closed_area_;
   const SolidSystem<dim>* solids_ = nullptr;  ///< solids of the last `find_hydrostatic_loads`

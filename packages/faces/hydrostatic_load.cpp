@@ -54,10 +54,11 @@ void HydrostaticLoads<dim>::add_closed(const ControlVolume<dim>& volume, int sol
   Point<dim> arm = center - centers_[solid];
   arm[axis] = 0;
   for (int side = 0; side < 2; ++side) {
-    if (volume.sides[side].unknown == no_index)
+    const PressureSide<dim>& of = volume.sides[side];
+    if (of.unknown == no_index && of.patch < 0)
       continue;
-    const double push = side == 0 ? area : -area;
-    const double force = push * pressure(volume.sides[side].center);
+    const double push = (side == 0 ? area : -area) * of.weight;
+    const double force = push * pressure(of.center);
     sum.force += force;
     sum.moment += force * arm;
     sum.open_area += push;

@@ -21,6 +21,11 @@ class FluxesOfSolids {
                                                  side == 0 ? -flux : flux);
     }
   }
+  /// Adds what a solid pushes into unknowns.
+  void add(int solid, const std::vector<std::pair<GlobalIndex, double>>& into) {
+    std::vector<std::pair<GlobalIndex, double>>& all = fluxes_[place_[solid]].into;
+    all.insert(all.end(), into.begin(), into.end());
+  }
   std::vector<PrescribedFlux> take() { return std::move(fluxes_); }
 
  private:

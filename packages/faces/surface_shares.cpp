@@ -29,9 +29,21 @@ void add_share(std::vector<SurfaceShare<dim>>& shares, const SurfaceShare<dim>& 
   shares.push_back(share);
 }
 
+/// The closed solid whose inside is beside the volume and that alone, of closed ones, moves it; or
+/// -1.
+template <int dim>
+int solid_beside(const ControlVolume<dim>& volume) {
+  const auto& sides = volume.sides;
+  const int lower = sides[0].kind == SideKind::solid ? sides[0].solid : -1;
+  const int upper = sides[1].kind == SideKind::solid ? sides[1].solid : -1;
+  return lower >= 0 && upper >= 0 && lower != upper ? -1 : std::max(lower, upper);
+}
+
 template <int dim>
 SurfaceShare<dim> closest_share(const ControlVolume<dim>& volume,
-                                const SurfaceSnapshot<dim>& surface) {
+                                const SurfaceSnapshot<dim>& surface, int own) {
+  if (own >= 0)
+    return {1, surface.closest_on_solid(volume.center, own), own};
   double radius = volume.box.diagonal().norm();
   auto closest = surface.closest(volume.center, radius);
   while (!closest)
@@ -50,18 +62,22 @@ std::vector<std::vector<SurfaceShare<dim>>> surface_shares(
   for (std::size_t f = 0; f < volumes.size(); ++f) {
     const Box<dim> box = thickened<dim>(volumes[f].box, tolerance);
     surface.touching(box, touching);
+    const int own = solid_beside(volumes[f]);
     double total = 0;
     for (int simplex : touching) {
+      const int solid = surface.solid_of(simplex);
+      if (own >= 0 && solid != own &&
+          (surface.solids()[solid].closed || volumes[f].touches_patch()))
+        continue;
       const ClippedSimplex<dim> part = clip_to_box<dim>(surface.corners(simplex), box);
       if (part.measure <= 0)
         continue;
       total += part.measure;
-      const int solid = surface.solid_of(simplex);
       const SurfacePoint<dim> point{simplex, part.barycentric, part.centroid, 0};
       add_share<dim>(all[f], {part.measure, point, solid}, surface.solids()[solid].rigid);
     }
     if (all[f].empty()) {
-      all[f].push_back(closest_share<dim>(volumes[f], surface));
+      all[f].push_back(closest_share<dim>(volumes[f], surface, own));
     } else {
       for (SurfaceShare<dim>& share : all[f])
         share.weight /= total;

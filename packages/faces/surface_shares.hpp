@@ -22,8 +22,10 @@ struct SurfaceShare {
 
 /// The shares of every coupled control volume (Section 5): each simplex is clipped to the dual
 /// cell, thickened by `tolerance` (relative to its width), and weighs by its clipped area; a volume
-/// that clips nothing takes the closest simplex. The simplices of one rigid solid are merged to one
-/// share, because their rows are the same.
+/// that clips nothing takes the closest simplex. Beside the inside of a closed solid other closed
+/// solids have no share, and in a contact patch no other solid: each closed solid moves the whole
+/// boundary of its cells, so that its rows of B sum to zero. The simplices of one rigid solid are
+/// merged to one share, because their rows are the same.
 template <int dim>
 std::vector<std::vector<SurfaceShare<dim>>> surface_shares(
     const std::vector<ControlVolume<dim>>& volumes, const SurfaceSnapshot<dim>& surface,

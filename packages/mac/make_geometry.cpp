@@ -6,6 +6,7 @@
 #include "liquid/gas/gas_faces.hpp"
 #include "liquid/surface/free_surface.hpp"
 #include "mac/tiles/moving_tiles.hpp"
+#include "staggered/state/contact_patches.hpp"
 #include "staggered/state/covered_sides.hpp"
 #include "staggered/state/ghost_faces.hpp"
 #include "staggered/state/surface_marks.hpp"
@@ -271,6 +272,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
     add_covered_sides(domain, rule, geometry);
   geometry.coupled_volumes.insert(geometry.coupled_volumes.end(), gas_volumes.begin(),
                                   gas_volumes.end());
+  if (state.surface)
+    add_contact_patches(domain, marks, geometry);
   complete_ghost_faces(domain, geometry);
   if (free_surface)
     set_distance_factor_to_air(domain, *free_surface, geometry);

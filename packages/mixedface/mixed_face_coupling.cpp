@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <map>
 
 #include "base/errors.hpp"
 #include "faces/coupling_end.hpp"
@@ -108,15 +109,25 @@ template <int dim>
 std::vector<PrescribedFlux> MixedFaceCoupling<dim>::solid_fluxes(
     const SolidSystem<dim>& solids) const {
   FluxesOfSolids fluxes(solids.solids());
+  std::map<int, std::vector<double>> into_patches;  // by solid and node
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
     for (const SurfaceShare<dim>& share : shares_[f]) {
       if (!solids.solids()[share.solid].prescribed)
         continue;
       const Point<dim> v = solids.prescribed_velocity(share.point, volume.center);
-      fluxes.add(share.solid, volume, share.weight * volume.area * v[volume.direction]);
+      const double flux = share.weight * volume.area * v[volume.direction];
+      fluxes.add(share.solid, volume, flux);
+      for (int side = 0; side < 2; ++side)
+        if (const int node = volume.sides[side].patch; node >= 0) {
+          std::vector<double>& at_nodes = into_patches[share.solid];
+          at_nodes.resize(patches_->n_nodes(), 0);
+          at_nodes[node] += side == 0 ? -flux : flux;
+        }
     }
   }
+  for (const auto& [solid, at_nodes] : into_patches)
+    fluxes.add(solid, patches_->drained(at_nodes));
   return fluxes.take();
 }
 

@@ -71,6 +71,7 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   using FaceCoupling<dim>::added_mass_;
   using FaceCoupling<dim>::coupling_transposed_;
   using FaceCoupling<dim>::masses_;
+  using FaceCoupling<dim>::patches_;
   using FaceCoupling<dim>::prescribed_velocity_;
   using FaceCoupling<dim>::pressure_import_;
   using FaceCoupling<dim>::solid_import_;

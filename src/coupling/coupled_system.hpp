@@ -59,6 +59,10 @@ class CoupledSystem {
   double lumped_fluid_energy(const std::vector<double>& coupled_velocity) const;
 
   const NullSpace& null_space() const { return blocks_.null_space; }
+  /// True if solids change the volume of closed fluid, which holds them fast along that motion.
+  bool locks_solids() const {
+    return blocks_.null_space.size() != blocks_.pressure_null_space.size();
+  }
 
  private:
   void add_given_fluxes(const Reduction& constraints, std::vector<PrescribedFlux>& fluxes) const;

@@ -9,6 +9,7 @@
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
 #include "interfaces/prescribed_flux.hpp"
+#include "linear/harmonic_extension.hpp"
 #include "linear/types.hpp"
 
 namespace lockstep {
@@ -17,6 +18,7 @@ namespace lockstep {
 enum class SideKind : char {
   unknown,  ///< a pressure that is solved for
   solid,    ///< the inside of a closed solid
+  patch,    ///< a wall or another closed solid, with no room for a pressure between
   air,      ///< air, p = 0
   open,     ///< an open side of the domain, p = 0
   closed    ///< a wall or an inflow, which takes any pressure
@@ -31,6 +33,10 @@ struct PressureSide {
   int solid = -1;                          ///< index in the snapshot if the kind is `solid`, or -1
   int bubble =
       -1;  ///< gas bubble (interfaces/gas.hpp) if the kind is `air` and it is in one, or -1
+  /// Node of `FluidGeometry::contact_patches` if the kind is `patch`, or -1: the pressure is the
+  /// harmonic extension's there, of a linear pressure that at `center` times `weight`.
+  int patch = -1;
+  double weight = 1;
 };
 
 /// The control volume of one staggered velocity (a dual cell). Its momentum balance is
@@ -55,8 +61,9 @@ struct ControlVolume {
   bool at_prescribed_side = false;
   GlobalIndex id = no_index;  ///< the fluid's own number; the same on any number of ranks
 
-  /// True if no pressure unknown is beside it, so that it moves gas only.
+  /// True if no pressure unknown is beside it, so that no liquid moves with it.
   bool only_gas() const { return sides[0].unknown == no_index && sides[1].unknown == no_index; }
+  bool touches_patch() const { return sides[0].patch >= 0 || sides[1].patch >= 0; }
 };
 
 /// Decides how far a control volume is open to the fluid: 1 free, 0 closed (mixed, after the
@@ -90,8 +97,8 @@ struct PressureRegions {
 /// The frozen geometry, as `set_geometry` makes it.
 template <int dim>
 struct FluidGeometry {
-  /// Control volumes with open_fraction < 1 and at least one pressure unknown or gas bubble, owned
-  /// here.
+  /// Control volumes with open_fraction < 1 and at least one pressure unknown, gas bubble or
+  /// contact patch, owned here.
   std::vector<ControlVolume<dim>> coupled_volumes;
   RCP<const Map> pressure_map;
   /// A = V G_f^T rho^-1 G_f over free faces [m^dim s / kg * 1/m^2]; symmetric positive
@@ -99,6 +106,10 @@ struct FluidGeometry {
   RCP<const LinearOperator> pressure_block;
   PressureRegions regions;
   double volume = 0;  ///< volume of the fluid [m^dim], global
+  /// Where closed solids touch walls and each other, so that no pressure is between: a patch has
+  /// the harmonic extension of the pressure around it, and what solids push out there comes out
+  /// around it. Null: nowhere; the same on all ranks.
+  std::shared_ptr<const HarmonicExtension> contact_patches;
 };
 
 /// Momentum that the explicit forces of a step gave to the fluid.
@@ -146,6 +157,9 @@ class FluidDiscretization : public PlugIn {
   const RCP<const LinearOperator>& pressure_block() const { return frozen_->pressure_block; }
   const PressureRegions& regions() const { return frozen_->regions; }
   double fluid_volume() const { return frozen_->volume; }
+  const std::shared_ptr<const HarmonicExtension>& contact_patches() const {
+    return frozen_->contact_patches;
+  }
 
   /// rhs = V G_f^T u* + V G_d^T u_d: minus the outflow of the free and the prescribed faces
   /// [m^dim/s].

@@ -182,16 +182,26 @@ Eigen::MatrixXd dense(const KnownRows& rows, const std::vector<GlobalIndex>& ids
 
 /// Inverse by Cholesky of the block scaled to a unit diagonal, so that kg and kg m^2 may differ by
 /// any factor. An empty matrix if it is not positive definite.
-Eigen::MatrixXd inverse_spd(const Eigen::MatrixXd& block) {
+template <typename Real>
+Eigen::MatrixXd inverse_spd_in(const Eigen::MatrixXd& block) {
+  using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
   if (!(block.diagonal().minCoeff() > 0))
     return {};
-  const Eigen::VectorXd scale = block.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * block * scale.asDiagonal());
+  const auto scale = block.diagonal().template cast<Real>().cwiseSqrt().cwiseInverse().eval();
+  const Eigen::LLT<Matrix> factor(scale.asDiagonal() * block.cast<Real>() * scale.asDiagonal());
   if (factor.info() != Eigen::Success)
     return {};
-  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(block.rows(), block.cols());
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * factor.solve(identity) * scale.asDiagonal();
-  return 0.5 * (inverse + inverse.transpose());
+  const Matrix identity = Matrix::Identity(block.rows(), block.cols());
+  const Matrix inverse = scale.asDiagonal() * factor.solve(identity) * scale.asDiagonal();
+  return (Real(0.5) * (inverse + inverse.transpose())).template cast<double>();
+}
+
+/// Small blocks in extended precision: those of a few bodies whose contacts are held are stiff, and
+/// in double the inverse would lose the digits of what is free.
+Eigen::MatrixXd inverse_spd(const Eigen::MatrixXd& block) {
+  constexpr Eigen::Index most_extended = 48;
+  return block.rows() <= most_extended ? inverse_spd_in<long double>(block)
+                                       : inverse_spd_in<double>(block);
 }
 
 }  // namespace

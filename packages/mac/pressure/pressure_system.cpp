@@ -127,6 +127,19 @@ Momentum<dim> whole_side_impulse(const MacDomain<dim>& domain, const MacGeometry
   return impulse;
 }
 
+/// Impulse of closed sides on the patches where solids touch them.
+template <int dim>
+Momentum<dim> patch_impulse(const MacGeometry<dim>& geometry,
+                            const std::vector<double>& pressure_of_node) {
+  Momentum<dim> impulse;
+  for (const ControlVolume<dim>& volume : geometry.coupled_volumes)
+    for (int end = 0; end < 2 && volume.at_prescribed_side; ++end)
+      if (const int node = volume.sides[end].patch; node >= 0)
+        impulse.add(volume.center, volume.direction,
+                    (end == 0 ? volume.area : -volume.area) * pressure_of_node[node]);
+  return impulse;
+}
+
 template <int dim>
 Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                     const Vector& scaled_pressure) {
@@ -135,10 +148,12 @@ Momentum<dim> side_pressure_impulse(const MacDomain<dim>& domain, const MacGeome
   const GlobalIndex first_unknown =
       values.size() > 0 ? geometry.pressure_map->getMinGlobalIndex() : 0;
   Momentum<dim> impulse = whole_side_impulse(domain, geometry, values.getRawPtr(), first_unknown);
+  if (geometry.contact_patches)
+    impulse += patch_impulse(geometry, geometry.contact_patches->extended(scaled_pressure));
   // The pressure of a side's part that solids cover acts on these; only the rest is the side's.
   for (std::size_t i = geometry.coupled.size(); i < geometry.coupled_volumes.size(); ++i) {
     const ControlVolume<dim>& volume = geometry.coupled_volumes[i];
-    if (!volume.at_prescribed_side)
+    if (!volume.at_prescribed_side || volume.touches_patch())
       continue;
     const int end = volume.sides[0].unknown == no_index ? 0 : 1;
     const double push =

@@ -30,6 +30,20 @@ ControlVolume<dim> volume_at_side(const MacDomain<dim>& domain, const MacGeometr
   return volume;
 }
 
+/// True if what covers the face goes on behind it. Where a solid only touches the side the pressure
+/// of the cell acts on its inner faces, and all around: it displaces nothing.
+template <int dim>
+bool goes_through(const SurfaceSnapshot<dim>& surface, const ControlVolume<dim>& volume, int end) {
+  constexpr double beyond = 0.25;  // cells
+  Point<dim> place = volume.center;
+  if (volume.open_fraction > 0)
+    place +=
+        volume.open_fraction / (1 - volume.open_fraction) * (volume.center - volume.open_center);
+  const double length = volume.box.sizes().maxCoeff();
+  place[volume.direction] += (end == 0 ? -beyond : beyond) * length;
+  return surface.inside(place) >= 0;
+}
+
 }  // namespace
 
 template <int dim>
@@ -51,6 +65,8 @@ void add_covered_sides(const MacDomain<dim>& domain, const OpenFractionRule<dim>
           continue;
         if (volume.open_fraction > 0)
           volume.open_center = rule.open_center(volume, *geometry.state.surface);
+        if (!goes_through(*geometry.state.surface, volume, end))
+          continue;
         geometry.coupled_volumes.push_back(volume);
         if (const int face = end == 0 ? cell : other; face >= 0)
           geometry.face_table.set_open(axis, face, volume.open_fraction);

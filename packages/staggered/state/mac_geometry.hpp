@@ -11,8 +11,8 @@
 namespace lockstep {
 
 /// The frozen geometry of one instant with the numbering of the pressures. The coupled volumes are
-/// those of `coupled`, behind them volumes at prescribed sides (add_covered_sides) and those that
-/// only gas pushes on.
+/// those of `coupled`, behind them volumes at prescribed sides (add_covered_sides), those that only
+/// gas pushes on, and those of contact patches.
 template <int dim>
 struct MacGeometry : FluidGeometry<dim> {
   GridState<dim> state;
