@@ -1,6 +1,9 @@
 // Active set of contacts and joint limits, found round by round.
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "base/errors.hpp"
 #include "base/round_off.hpp"
 #include "contact/contact_problem.hpp"
 
@@ -18,6 +21,24 @@ constexpr int most_at_once = dim == 2 ? 2 : 4;
 }  // namespace
 
 template <int dim>
+void ContactProblem<dim>::check_room(const Contact<dim>& contact) const {
+  constexpr double most = 0.25;  // cells; a start may overlap by less
+  if (phase_ != ContactPhase::position || -contact.gap <= most * spacing_)
+    return;
+  const auto name = [&](int solid) { return '"' + shapes_.solids()[solid].name + '"'; };
+  const int side = ~contact.other;
+  throw SolveError(fmt::format(
+      "{} is driven {:.3g} m deep into {}, more than {} of a cell, and no contact can stop it: its "
+      "motion, or that of joints that move it, is prescribed (\"Motion\" of solids, \"Control\" of "
+      "joints). Give it room, a target that stops before, or a motor of limited torque.",
+      name(contact.solid), -contact.gap,
+      contact.other >= 0
+          ? name(contact.other)
+          : fmt::format("the side \"{} {}\"", "xyz"[side / 2], side % 2 == 0 ? "lower" : "upper"),
+      most));
+}
+
+template <int dim>
 void ContactProblem<dim>::leave_out_immovable(ImpulseSolver<dim>& solver) {
   const std::vector<double>& velocity = solver.velocity();
   const SolidMotion<dim> motion(system_, shapes_, velocity);
@@ -26,8 +47,10 @@ void ContactProblem<dim>::leave_out_immovable(ImpulseSolver<dim>& solver) {
     const Contact<dim>& contact = candidate.contact;
     if (any_bends({contact.solid, contact.other}) && !system_.joints())
       continue;  // nodes that are held are no candidates
-    if (candidate.target > normal_velocity(motion, contact) && !solver.can_move(contact))
+    if (candidate.target > normal_velocity(motion, contact) && !solver.can_move(contact)) {
+      check_room(contact);
       any = candidate.active = true;
+    }
   }
   for (Limit& one : limits_) {
     if (one.target > one.value(velocity) && !solver.can_move(one.resolved))

@@ -19,6 +19,9 @@ constexpr double usual_slop = 0.05;
 constexpr double deepest = 0.5;
 /// Part of an overlap beyond the slop that one step removes.
 constexpr double push_out_rate = 0.2;
+/// Turn of a step [rad] beyond which no linear function of the velocities is near the gap: then
+/// places go along chords.
+constexpr double longest_arc = 0.5;
 /// No restitution below this speed of approach [m/s]: forces of a step alone do not bounce.
 constexpr double least_bounce = 1e-3;
 
@@ -123,19 +126,68 @@ double ContactProblem<dim>::slop(const Contact<dim>& contact) const {
 }
 
 template <int dim>
-double ContactProblem<dim>::target(const Contact<dim>& contact, double normal_velocity,
-                                   double before) const {
-  const double free = -std::max(contact.gap, 0.0) / dt_;
+Point<dim> ContactProblem<dim>::turned_place(const SolidMotion<dim>& motion, int solid,
+                                             const Point<dim>& x, const Point<dim>& normal) const {
+  if (solid < 0 || !shapes_.solids()[solid].rigid)
+    return x;
+  const Point<dim> center = motion.center(solid), of_center = motion.at(solid, {}, center);
+  const auto turn = [&](const Point<dim>& arm) {
+    return Point<dim>(motion.at(solid, {}, center + arm) - of_center);
+  };
+  const double rate = motion.spin(solid).norm();
+  const Point<dim> along = turn(x - center);
+  const double closing = -normal.dot(along);
+  if (rate == 0 || rate * dt_ > longest_arc || closing <= 0)
+    return x;
+  const double lowest = std::atan2(closing, normal.dot(turn(along)) / rate) / rate;
+  const double duration = std::min(dt_, lowest);
+  return motion.end_of_point(solid, x, duration) - duration * of_center;
+}
+
+template <int dim>
+void ContactProblem<dim>::follow_turns(const SolidMotion<dim>& motion,
+                                       Contact<dim>& contact) const {
+  if (contact.impact)
+    return;
+  const Point<dim> x = contact.x, normal = contact.normal;
+  const Point<dim> with_solid = turned_place(motion, contact.solid, x, normal);
+  const Point<dim> with_other = turned_place(motion, contact.other, x, -normal);
+  if (with_solid == x && with_other == x)
+    return;
+  // One place for both, or angular momentum would not be kept.
+  if (is_given(contact.other))
+    contact.x = with_solid;
+  else
+    contact.x = is_given(contact.solid) ? with_other : Point<dim>(0.5 * (with_solid + with_other));
+  const auto turn = [&](int solid) {
+    if (solid < 0 || !shapes_.solids()[solid].rigid)
+      return Point<dim>(Point<dim>::Zero());
+    return Point<dim>(motion.at(solid, {}, contact.x) - motion.at(solid, {}, motion.center(solid)));
+  };
+  contact.bend = normal.dot(with_solid - with_other) -
+                 dt_ * normal.dot(turn(contact.solid) - turn(contact.other));
+}
+
+template <int dim>
+double ContactProblem<dim>::target(const Contact<dim>& contact, const SolidMotion<dim>& motion,
+                                   const SolidMotion<dim>& motion_before) const {
+  const double normal_velocity = this->normal_velocity(motion, contact);
+  const double before = this->normal_velocity(motion_before, contact);
+  // No target is above zero where nothing overlaps, so that contact gives no energy.
+  const double free = std::min(0., -(std::max(contact.gap, 0.0) + contact.bend) / dt_);
   if (phase_ == ContactPhase::position) {
     const double excess = -contact.gap - slop(contact);
     return excess <= 0 ? free : std::min(push_out_rate * excess, 0.25 * spacing_) / dt_;
   }
   // Forces of this step alone, as those on a resting body, do not bounce. What arrives exactly at
-  // the end of the step does so in the next, whatever the round-off.
+  // the end of the step does so in the next, whatever the round-off. What does not bounce at all
+  // goes on until it touches.
   const double closing = std::min(-normal_velocity, -before);
-  if (normal_velocity < free - rounding::differences * closing && closing > least_bounce)
-    return std::max(
-        free, closing * mean(contact, &SolidDescription::restitution, options_.wall_restitution));
+  const double restitution =
+      mean(contact, &SolidDescription::restitution, options_.wall_restitution);
+  if (restitution > 0 && closing > least_bounce &&
+      normal_velocity < free - rounding::differences * closing)
+    return std::max(free, closing * restitution);
   return free;
 }
 
@@ -167,11 +219,11 @@ double ContactProblem<dim>::worst_violation(const SolidMotion<dim>& motion,
   ContactReach look = reach(motion);
   look.violated_only = true;
   double worst = 0;
-  for (const Contact<dim>& contact : find_contacts(shapes_, motion, walls_, look)) {
+  for (Contact<dim>& contact : find_contacts(shapes_, motion, walls_, look)) {
     if (is_apart(contact))
       continue;
-    const double now = normal_velocity(motion, contact);
-    worst = std::max(worst, target(contact, now, normal_velocity(before, contact)) - now);
+    follow_turns(before, contact);
+    worst = std::max(worst, target(contact, motion, before) - normal_velocity(motion, contact));
     deepest_ = std::max(deepest_, -contact.gap);
   }
   return worst;
@@ -185,9 +237,9 @@ void ContactProblem<dim>::add_candidates(const SolidMotion<dim>& motion,
   for (Contact<dim>& contact : find_contacts(shapes_, motion, walls_, look)) {
     if (is_apart(contact) || is_known(contact))
       continue;
+    follow_turns(before, contact);
     Candidate candidate;
-    candidate.target =
-        target(contact, normal_velocity(motion, contact), normal_velocity(before, contact));
+    candidate.target = target(contact, motion, before);
     candidate.contact = std::move(contact);
     const int number = static_cast<int>(candidates_.size());
     pairs_[{candidate.contact.solid, candidate.contact.other}].push_back(number);

@@ -75,7 +75,20 @@ class ContactProblem {
   /// `unheld`: nothing has acted on the motion yet.
   void add_candidates(const SolidMotion<dim>& motion, const SolidMotion<dim>& before,
                       bool unheld = true);
-  double target(const Contact<dim>& contact, double normal_velocity, double before) const;
+  /// Least normal velocity [m/s] for a motion, `before` that of the beginning of the step.
+  double target(const Contact<dim>& contact, const SolidMotion<dim>& motion,
+                const SolidMotion<dim>& before) const;
+  /// Where the turning of a rigid solid takes a point of it against the normal within the step: to
+  /// the end of its arc, or to the lowest point on the way. Other solids do not turn.
+  Point<dim> turned_place(const SolidMotion<dim>& motion, int solid, const Point<dim>& x,
+                          const Point<dim>& normal) const;
+  /// Lets the impulse act where turning takes the place in contact, and finds its `bend`: the gap
+  /// there as a linear function of the velocities near `motion`, that of the beginning of the step,
+  /// since what nothing holds yet may turn in any way. Along its chord a wheel would land on a
+  /// point ahead of it, which brakes it.
+  void follow_turns(const SolidMotion<dim>& motion, Contact<dim>& contact) const;
+  /// True if it does not move by impulses: a wall or a prescribed solid.
+  bool is_given(int solid) const { return solid < 0 || shapes_.solids()[solid].prescribed; }
   double normal_velocity(const SolidMotion<dim>& motion, const Contact<dim>& contact) const;
   /// Geometric mean of a property of both sides.
   double mean(const Contact<dim>& contact, double SolidDescription::*property,
@@ -89,6 +102,8 @@ class ContactProblem {
   double largest_violation(const SolidMotion<dim>& motion,
                            const std::vector<double>& velocity) const;
   void find_scale(const SolidMotion<dim>& motion, const std::vector<double>& velocity);
+  /// Throws SolveError if a contact that nothing can move is deep: what is driven does not stop.
+  void check_room(const Contact<dim>& contact) const;
   /// Leaves out contacts and limits along which nothing can move: no impulse would change them.
   void leave_out_immovable(ImpulseSolver<dim>& solver);
   /// Activates a candidate; returns false if nothing moves along it.

@@ -15,8 +15,11 @@ struct Contact {
   Point<dim> x = Point<dim>::Zero();  ///< where the impulse acts on both [m]
   /// The points meet later: each side is pushed at its own point, not at x.
   bool impact = false;
-  Point<dim> normal = Point<dim>::Zero();         ///< unit, out of `other`
-  double gap = 0;                                 ///< along the normal, negative in an overlap [m]
+  Point<dim> normal = Point<dim>::Zero();  ///< unit, out of `other`
+  double gap = 0;                          ///< along the normal, negative in an overlap [m]
+  /// What the turning of rigid solids adds to the gap within the step, beside dt times the normal
+  /// velocity at x [m].
+  double bend = 0;
   Point<dim> wall_velocity = Point<dim>::Zero();  ///< if `other` is a wall [m/s]
 
   const Point<dim>& place() const { return impact ? point.position : x; }
