@@ -236,13 +236,20 @@ std::vector<TableColumn<BodyRow<dim>>> body_columns() {
                   [](const Row& row) { return row.state.velocity; });
   add_rotation<dim>(columns, "w", "rad/s", "angular velocity",
                     [](const Row& row) { return row.state.angular_velocity; });
-  add_vector<dim>(columns, "f", "N", "hydrodynamic force, mean over the step",
-                  [](const Row& row) { return Point<dim>(row.impulse.linear / row.report.dt); });
-  add_rotation<dim>(columns, "t", "N m", "hydrodynamic torque about the centre of mass",
-                    [](const Row& row) {
-                      const auto moved = cross<dim>(row.state.center_of_mass, row.impulse.linear);
-                      return AngularVector<dim>((row.impulse.angular - moved) / row.report.dt);
+  const auto add = [&](const std::string& prefix, const std::string& what, auto impulse_of) {
+    add_vector<dim>(columns, prefix + "f", "N", what + " force, mean over the step",
+                    [impulse_of](const Row& row) {
+                      return Point<dim>(impulse_of(row).linear / row.report.dt);
                     });
+    add_rotation<dim>(columns, prefix + "t", "N m", what + " torque about the centre of mass",
+                      [impulse_of](const Row& row) {
+                        const Momentum<dim> impulse = impulse_of(row);
+                        const auto moved = cross<dim>(row.state.center_of_mass, impulse.linear);
+                        return AngularVector<dim>((impulse.angular - moved) / row.report.dt);
+                      });
+  };
+  add("", "hydrodynamic", [](const Row& row) { return row.impulse; });
+  add("contact_", "contact's and joint limits'", [](const Row& row) { return row.of_contact; });
   return columns;
 }
 

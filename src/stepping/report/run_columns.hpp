@@ -3,13 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "interfaces/momentum.hpp"
 #include "stepping/report/row_table.hpp"
 
 namespace lockstep {
 
 struct JointState;
-template <int dim>
-struct Momentum;
 template <int dim>
 struct SolidState;
 template <int dim>
@@ -30,6 +29,7 @@ struct BodyRow {
   const StepReport<dim>& report;
   const SolidState<dim>& state;
   const Momentum<dim>& impulse;  ///< hydrodynamic, over dt, angular about the origin
+  Momentum<dim> of_contact;      ///< likewise, by contacts and limits of joints
 };
 
 /// Source of a row of joints.csv: a step and a coordinate.

@@ -54,7 +54,8 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
   history_.append({{step, report, wall_seconds}});
   std::vector<BodyRow<dim>> rows;
   for (std::size_t s = 0; s < states.size(); ++s)
-    rows.push_back({step, report, states[s], report.hydrodynamic_impulse[s]});
+    rows.push_back({step, report, states[s], report.hydrodynamic_impulse[s],
+                    report.contact_impulse.empty() ? Momentum<dim>() : report.contact_impulse[s]});
   bodies_.append(rows);
 }
 

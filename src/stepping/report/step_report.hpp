@@ -40,6 +40,9 @@ struct StepReport {
   GlobalIndex n_clamped_elements = 0;               ///< see SolidOutput
   double stretch_beyond_limit = 0;                  ///< see SolidOutput [1]
   std::vector<Momentum<dim>> hydrodynamic_impulse;  ///< per solid over dt, angular about the origin
+  /// By contacts and limits of joints on dynamic solids, per solid over dt, angular about the
+  /// origin; empty: there are none.
+  std::vector<Momentum<dim>> contact_impulse;
   ContactReport<dim> contact_position, contact_velocity;
   RCP<const Vector> reactions;  ///< impulses of constraints in S2, generalized; null: no unknowns
 };

@@ -154,11 +154,17 @@ MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& co
     MotionWithContacts<dim> held = solve_with_contacts(context, momentum);
     end.solution = held.solution;
     end.contact = held.contact;
+    if (held.contact.n_contacts > 0)
+      end.contact_impulse = held.contact.impulse;
   } else {
     if (components_.contact && components_.solids->has_unknowns()) {
       const RCP<const Vector> at_rest = impulse_at_rest(context.dt);
       momentum->update(1, *at_rest, 1);
+      const auto impulse = rcp(new Vector(*momentum, Teuchos::Copy));
       end.contact = contact_before_solve(context, *momentum);
+      impulse->update(1, *momentum, -1);
+      if (end.contact.n_contacts > 0)
+        end.contact_impulse = impulse;
       momentum->update(-1, *at_rest, 1);
     }
     if (!drag.is_null())

@@ -17,6 +17,7 @@ template <int dim>
 struct MotionWithContacts {
   CoupledSolution solution;
   ContactReport<dim> contact;
+  RCP<const Vector> contact_impulse{};  ///< generalized, of all contacts and limits; null: none
 };
 
 /// Finds p̂ and V of Eq. 16 at frozen geometry, with implicit forces of solids, gas and contact.
@@ -81,6 +82,7 @@ class CoupledSolve {
   void release(const StepContext<dim>& context, MotionWithContacts<dim>& motion);
   ContactReport<dim> decide(const StepContext<dim>& context, const ContactResponse& response,
                             Vector& velocity);
+  void soften(double dt, std::vector<HeldRow>& rows) const;
 
   Components<dim>& components_;
   CoupledSystem<dim>& system_;

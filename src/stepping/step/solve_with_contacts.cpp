@@ -3,10 +3,14 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
+#include "linear/block_diagonal.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "solve/soft/exact_inverse.hpp"
 #include "stepping/step/coupled_solve.hpp"
+#include "stepping/step/secant_response.hpp"
 
 namespace lockstep {
 
@@ -17,7 +21,7 @@ constexpr double stiffness_factor = 1e5;
 /// Velocity by which solve and contact model may differ, over that which gravity and impacts ask
 /// for [1].
 constexpr double tolerance = 1e-5;
-constexpr int most_solves = 10, most_without_gain = 3;
+constexpr int most_solves = 12, most_without_gain = 5;
 
 double stiffness_of(const HeldRow& row) {
   return stiffness_factor / row.response;
@@ -69,6 +73,12 @@ RCP<Vector> impulse_of(const ContactReport<dim>& contacts, const Vector& velocit
   return impulse;
 }
 
+RCP<const Vector> difference(const Vector& a, const Vector& b) {
+  const auto result = rcp(new Vector(a, Teuchos::Copy));
+  result->update(-1, b, 1);
+  return result;
+}
+
 double largest(const std::vector<double>& values) {
   double most = 0;
   for (const double value : values)
@@ -83,10 +93,9 @@ bool CoupledSolve<dim>::holds_contacts() const {
   const auto is_soft = [](const SolidDescription& solid) {
     return !solid.rigid && !solid.prescribed;
   };
-  const auto& has_level = components_.fluid->regions().has_dirichlet;
   return components_.contact && solids.has_unknowns() && !solids.joints() &&
          std::none_of(solids.solids().begin(), solids.solids().end(), is_soft) &&
-         std::all_of(has_level.begin(), has_level.end(), [](char has) { return has != 0; });
+         !system_.locks_solids();
 }
 
 template <int dim>
@@ -118,8 +127,32 @@ ContactReport<dim> CoupledSolve<dim>::decide(const StepContext<dim>& context,
   ScopedStage stage(timers_, "contact");
   const ContactPhase phase =
       context.moves_positions ? ContactPhase::position : ContactPhase::velocity;
-  return components_.contact->resolve(*components_.solids, phase, context.step.dt, velocity,
-                                      response);
+  ContactReport<dim> report =
+      components_.contact->resolve(*components_.solids, phase, context.step.dt, velocity, response);
+  soften(context.dt, report.held);
+  return report;
+}
+
+/// Lets no stiffness be so large beside a light body's own mass that the round-off of K J V reaches
+/// the tolerance of the solve in the directions that are free.
+template <int dim>
+void CoupledSolve<dim>::soften(double dt, std::vector<HeldRow>& rows) const {
+  if (rows.empty())
+    return;
+  constexpr double round_off = 10 * std::numeric_limits<double>::epsilon();
+  const auto& solids = *components_.solids;
+  const RCP<const Vector> mobility = inverse_diagonal(
+      *assembled(solids.solid_block(components_.coupling->added_mass(), dt)), "solids in contact");
+  const auto of_dofs = mobility->getData();
+  std::vector<double> own(rows.size(), 0);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (const auto& [dof, weight] : rows[k].weights)
+      if (const int local = mobility->getMap()->getLocalElement(dof); local >= 0)
+        own[k] += weight * weight * of_dofs[local];
+  sum_over_ranks(solids.comm(), own);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    rows[k].response =
+        std::max(rows[k].response, stiffness_factor * round_off / options_.tolerance * own[k]);
 }
 
 template <int dim>
@@ -218,11 +251,22 @@ ContactReport<dim> CoupledSolve<dim>::compare(const StepContext<dim>& context,
 template <int dim>
 MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext<dim>& context,
                                                                const RCP<const Vector>& momentum) {
-  const ContactResponse response = contact_response(context.dt);
+  std::optional<SecantResponse> learned;
+  const ContactResponse response = [&, first = contact_response(context.dt)]() {
+    if (!learned)
+      learned.emplace(first());
+    return learned->current();
+  };
   MotionWithContacts<dim> held, best;
   held.contact = expected_contacts(context, *momentum, response);
+  RCP<const Vector> last_impulse, last_velocity;
   for (int k = 1, last_gain = 1;; ++k) {
     solve_held(context, *momentum, k > 1 ? &best.solution.unknowns : nullptr, held);
+    if (k > 1 && learned)
+      learned->learn(*difference(*held.contact.impulse, *last_impulse),
+                     *difference(*held.solution.velocity, *last_velocity));
+    last_impulse = held.contact.impulse;
+    last_velocity = held.solution.velocity;
     double scale = 0;
     ContactReport<dim> next = compare(context, response, held, scale);
     if (k == 1 || held.contact.residual < 0.5 * best.contact.residual)

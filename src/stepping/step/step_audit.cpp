@@ -176,6 +176,8 @@ void StepAudit<dim>::book_solids(const StepContext<dim>& context, const StageRes
   if (!stages.friction.viscous.solid_impulse.is_null())
     gained->update(1, *stages.friction.viscous.solid_impulse, 1);
   add_each(solids.momentum_of_each(*gained), report.hydrodynamic_impulse);
+  if (!stages.end.contact_impulse.is_null())
+    report.contact_impulse = solids.momentum_of_each(*stages.end.contact_impulse);
 }
 
 template <int dim>
