@@ -266,6 +266,11 @@ void VolumeOfFluid<dim>::advance(const InterfaceStep<dim>& step) {
   if (parameters_.removes_fragments)
     remove_fragments(domain_, solids_, tiles, fractions_);
   const Repayment repayment = pay_back(
+  // A surface that takes a cell's centre hands its liquid on as a defect, and the fractions
+  // continued into the solid fill it again with the opposite one: paid apart, the two would raise
+  // and lower a whole component by what has not moved.
+  if (solids_.has_solids(true))
+    make_distance(tiles);
       domain_, solids_, phi_, parameters_.largest_shift * std::max(1.0, courant_), fractions_);
   n_bodies_ = repayment.n_bodies;
   paid_ += repayment.paid;
