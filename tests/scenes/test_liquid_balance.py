@@ -42,6 +42,20 @@ class LiquidBalance(unittest.TestCase):
                   Solids={"Disc": disc}, Coupling={"Type": "flux"}, sides=sides(y_upper="open")), "--end-time", .5)
         self.assertLess(column(rows, "volume_shift")[-1], .1 * .0735)
 
+    def drop(self, model, n):
+        """A drop flies over twice its size under surface tension; n cells a metre."""
+        surface = {"Surface Tension": .1, "Interface": {"Type": model},
+                   "Liquid": {"Drop": {"Type": "ball", "Center": (.51, .503), "Radius": .25}}}
+        return scene((2 * n, n), (2., 1.), surface, {"CFL": .5},
+                     sides=sides(x_lower="periodic", x_upper="periodic", y_lower="open", y_upper="open"),
+                     fluid={"Density": 1., "Gravity": (0., 0.), "Initial State": {"Type": "uniform", "Velocity": (1., 0.)}})
+
+    def test_a_drop_that_flies_keeps_its_energy(self):
+        for model, n in ("level set", 32), ("particle level set", 32), ("volume of fluid", 64):
+            with self.subTest(model=model):
+                energy = column(self.run_scene(self.drop(model, n), "--end-time", 2), "fluid_kinetic_energy")
+                self.assertLess(max(abs(e / energy[0] - 1) for e in energy), .01)
+
 
 if __name__ == "__main__":
     unittest.main()
