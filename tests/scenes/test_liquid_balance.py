@@ -56,6 +56,18 @@ class LiquidBalance(unittest.TestCase):
                 energy = column(self.run_scene(self.drop(model, n), "--end-time", 2), "fluid_kinetic_energy")
                 self.assertLess(max(abs(e / energy[0] - 1) for e in energy), .01)
 
+    def test_a_source_gives_its_width_times_its_speed_at_any_step(self):
+        width, speed = .2, 1.
+        tap = {"Shape": "box", "Lower": (.4, .8), "Upper": (.6, .9), "Liquid": True, "Velocity": (0., -speed)}
+        for model, tolerance in ("particle level set", .06), ("volume of fluid", .01):
+            for step in .02, .005:
+                with self.subTest(model=model, step=step):
+                    rows = self.run_scene(scene((50, 50), (1., 1.), {"Interface": {"Type": model}}, {"Fixed Step": step},
+                                                fluid={"Sources": {"Tap": tap}}), "--end-time", .36)
+                    given = [v for t, v in zip(column(rows, "time"), column(rows, "liquid_volume_target")) if t > .119]
+                    self.assertAlmostEqual((given[-1] - given[0]) / (.24 * width * speed), 1, delta=tolerance)
+                    self.assertLess(max(column(rows, "momentum_error")), 1e-12)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -59,6 +59,12 @@ void MacLiquid<dim>::move(double time, double dt, const MovingSurface<dim>& surf
                ? 0
                : flow_.geometry.face_table(axis, cell).open;
   };
+  // The surface of a source recedes at its velocity, whatever pressure and fall make of it within a
+  // step: it gives its width times its speed.
+  if (flow_.scalars.sources_push(time)) {
+    flow_.scalars.push(flow_.geometry, time, advection);
+    flow_.domain.halo.fill(advection);
+  }
   const InterfaceStep<dim> step{advection,
                                 surface,
                                 flow_.ray_halo,
