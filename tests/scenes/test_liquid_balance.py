@@ -68,6 +68,53 @@ class LiquidBalance(unittest.TestCase):
                     self.assertAlmostEqual((given[-1] - given[0]) / (.24 * width * speed), 1, delta=tolerance)
                     self.assertLess(max(column(rows, "momentum_error")), 1e-12)
 
+    def test_a_jet_that_leaves_through_open_sides_does_not_fade(self):
+        """It hits a wall and goes off along it, as a film of two cells."""
+        jet = {**sides(x_upper="slip wall", y_lower="open", y_upper="open"),
+               "x lower": {"Type": "inflow", "Velocity": (1., 0.), "Opening": {"Lower": (-.1, -.05), "Upper": (.1, .05)}}}
+        for model in MODELS:
+            with self.subTest(model=model):
+                rows = self.run_scene(
+                    scene((24, 32), (.6, .4), {"Interface": {"Type": model},
+                                               "Liquid": {"Start": {"Type": "box", "Lower": (-1., -.05), "Upper": (.1, .05)}}},
+                          {"Fixed Step": .02}, lower=(0., -.4), sides=jet,
+                          fluid={"Gravity": (0., 0.), "Initial State": {"Type": "uniform", "Velocity": (1., 0.)}}),
+                    "--end-time", 3)
+                pushes = [(t, -i / .02) for t, i in zip(column(rows, "time"), column(rows, "boundary_impulse_x"))]
+                early, late = (mean(f for t, f in pushes if begin < t <= begin + .5) for begin in (1, 2.5))
+                self.assertAlmostEqual(late / 100, 1, delta=.03)
+                self.assertAlmostEqual(late / early, 1, delta=.01)
+
+    def test_what_bodies_press_out_between_them_is_kept_and_told(self):
+        """Soft blocks sink onto each other, and a soft one is pressed between two rigid ones."""
+        soft = {"Type": "deformable body", "Density": 1100., "Time Integration": "fully-implicit",
+                "Material": {"Type": "neo-hookean", "Young's Modulus": 5e4, "Poisson's Ratio": .4}}
+
+        def block(x, y, size):
+            return {**soft, "Geometry": {"Shape": "box", "Size": (size, size), "Mesh Spacing": .05}, "Position": (x, y)}
+
+        def plate(y, motion):
+            return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.5, .1)}, "Density": 1., "Position": (.5, y),
+                    "Motion": motion}
+
+        pile = {f"S{i}": block((.3, .5, .7)[i % 3], (.25, .53)[i // 3], .18) for i in range(6)}
+        press = {"Soft": block(.5, .4, .3), "Bottom": plate(.15, {"Type": "static"}),
+                 "Top": plate(.66, {"Type": "sinusoid", "Amplitude": (0., -.12), "Frequency": .5})}
+        for model, solids in ("particle level set", pile), ("volume of fluid", press):
+            with self.subTest(model=model), tempfile.TemporaryDirectory() as folder:
+                path, out = Path(folder) / "scene.xml", Path(folder) / "out"
+                path.write_text(scene((32, 32), (1., 1.), {"Liquid": POOL, "Interface": {"Type": model}},
+                                      {"CFL": .9, "Largest Step": .01}, Solids=solids))
+                result = attempt(path, out, "--end-time", 1.5)
+                self.assertEqual(result.returncode, 0, result.stdout[-2000:])
+                rows = table(out / "history.csv")
+                target, off = column(rows, "liquid_volume_target"), 0
+                self.assertEqual(max(column(rows, "lost_volume")), 0)
+                self.assertLess(max(target) - min(target), 1e-10)
+                off = max(abs(v / t - 1) for v, t in zip(column(rows, "liquid_volume"), target))
+                self.assertEqual(result.stdout.count("is off the target"), 1 if off > 1e-3 else 0)
+                self.assertAlmostEqual(column(rows, "liquid_volume")[-1], target[-1], delta=.003 * target[-1])
+
 
 if __name__ == "__main__":
     unittest.main()
