@@ -1,5 +1,6 @@
 #include "liquid/liquid.hpp"
 
+#include <cmath>
 #include <numeric>
 
 #include "base/errors.hpp"
@@ -44,12 +45,14 @@ template <int dim>
 Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
                     const Point<dim>& acceleration, const InterfaceRegistry<dim>& interfaces,
                     const MacDomain<dim>& domain)
-    : domain_(domain),
-      acceleration_(acceleration.norm()),
-      filter_shift_(domain.grid.n_stored_cells(), 0.0) {
+    : domain_(domain), filter_shift_(domain.grid.n_stored_cells(), 0.0) {
   check_free_surface<dim>(fluid, gravity, periodic_axes(domain));
   const ParameterList& list = fluid.sublist("Free Surface");
   parameters_ = read_free_surface(list);
+  // omega^2 = k (g + sigma k^2 / rho)
+  short_wave_acceleration_ =
+      acceleration.norm() +
+      parameters_.tension / (fluid.get<double>("Density") * std::pow(domain.spacing(), 2));
   initial_distance_ = read_liquid<dim>(fluid, gravity);
   starts_empty_ = list.sublist("Liquid").numParams() == 0;
   sinks_ = read_sinks<dim>(list);
@@ -88,6 +91,12 @@ template <int dim>
 FreeSurface<dim> Liquid<dim>::surface() {
   FreeSurface<dim> surface;
   surface.distance = &interface_->distance();
+  if (parameters_.tension > 0) {
+    leading_distance_ = interface_->distance();
+    for (std::size_t cell = 0; cell < leading_distance_.size(); ++cell)
+      leading_distance_[cell] += filter_shift_[cell];
+    surface.leading_distance = &leading_distance_;
+  }
   // All crossings about a wet cell's centre must be at one place, or the capillary force would
   // drive the fluid between two such places, by its difference over next to no distance.
   surface.crossing = [this, &phi = interface_->distance()](int wet, int dry) {
@@ -121,9 +130,9 @@ void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geom
     extension.extend(step.time, step.surface.velocity, velocity);
     stop_beyond<dim>(geometry.state, velocity);
   }
-  if (acceleration_ > 0)
+  if (short_wave_acceleration_ > 0)
     filter_shift_ = short_wave_filter<dim>(domain_, geometry, interface_->distance(),
-                                           advection_velocity, acceleration_, step.dt);
+                                           advection_velocity, short_wave_acceleration_, step.dt);
   if (gas_)
     gas_->pass_over(step.surface);
   interface_->advance(step);

@@ -59,10 +59,12 @@ class Liquid {
  private:
   const MacDomain<dim>& domain_;
   FreeSurfaceParameters parameters_;
-  double acceleration_ = 0;  ///< by gravity and body force [m/s^2]
+  /// Restoring acceleration of waves of number 1/h: by gravity, body force and tension [m/s^2].
+  double short_wave_acceleration_ = 0;
   bool starts_empty_ = false;
-  CellField filter_shift_;  ///< interface filter: distance of the pressure's phi ahead of the
-                            ///< interface's [m]
+  CellField filter_shift_;      ///< interface filter: distance of the pressure's phi ahead of the
+                                ///< interface's [m]
+  CellField leading_distance_;  ///< phi of the pressure, with tension [m]
   std::optional<SampleLattice<dim>> lattice_;  ///< lattice of the tiles since the last `begin`
   std::vector<SignedDistance<dim>> sinks_;
   std::vector<Point<dim>> dry_points_;

@@ -154,13 +154,12 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
       "sigma [N/m] (2D: [N]): the pressure jumps by sigma times the curvature; the surface meets "
       "solids and sides at 90 degrees. 0: none.");
   declare_choice(
-      list, "Time Integration", "explicit", {"explicit", "semi-implicit"},
+      list, "Time Integration", "semi-implicit", {"semi-implicit", "explicit"},
       "Of surface tension. explicit: steps are at most 0.28 sqrt(density h^3 / sigma). "
       "semi-implicit: 8 times that; "
       "what the surface does within the step is foreseen by a viscous solve in which sigma dt "
       "times the surface Laplacian holds the velocity back, and one more pressure solve before "
-      "it. Damps ripples a few cells long, and what turns and swings, the more the longer the "
-      "step.");
+      "it. Damps what turns and swings, the more the longer the step.");
   declare_trapped_air(list);
   declare_between(list, "Pressure Order", 2, 1, 2,
                   "2: p = 0 where the surface is. 1: at the centre of the first cell above it, to "

@@ -235,7 +235,6 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   flow_.last_step = dt;
   flow_.set_prescribed(flow_.time, flow_.prediction);
   ForceImpulse<dim> given;
-  given.impulse = push_sources(time);
   const MacGeometry<dim>& geometry = flow_.geometry;
   const ForceField<dim> force(flow_.domain, geometry, flow_.parameters.forces, flow_.scalars);
   Momentum<dim> mine = push_faces(force, dt);
@@ -249,6 +248,9 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
     push_surface(dt);
     given.impulse += flow_.surface_impulse;
   }
+  // After all forces: a step's fall on top of a source's velocity would bring more, the longer it
+  // is.
+  given.impulse += push_sources(time);
   flow_.domain.halo.fill(flow_.prediction);
   given.impulse += sum_over_ranks(mine, flow_.domain.grid.comm());
   given.coupled_change.reserve(geometry.coupled_volumes.size());

@@ -24,10 +24,28 @@ void RunWarnings<dim>::warn_of_watches(long long step, const std::vector<Watched
 }
 
 template <int dim>
+void RunWarnings<dim>::warn_of_volume(long long step, const LiquidReport& liquid, const Log& log) {
+  constexpr double most = 1e-3;  // of the liquid
+  const double all = liquid.target + liquid.lost, off = liquid.volume - liquid.target;
+  if (of_volume_ || std::abs(off) + liquid.lost <= most * all)
+    return;
+  of_volume_ = true;
+  log.warning(
+      "Step {}: of the liquid {:.2g} is lost, and its volume is off the target by {:.2g} of it. "
+      "What "
+      "is thinner than a cell, as spray and what bodies press out between them, takes a finer "
+      "grid. "
+      "Later steps like this one are not reported.",
+      step, liquid.lost / all, off / all);
+}
+
+template <int dim>
 void RunWarnings<dim>::after_step(long long step, const StepReport<dim>& report,
                                   const Components<dim>& components, const Log& log) {
-  if (report.liquid)
+  if (report.liquid) {
     warn_of_watches(step, report.liquid->watches, *components.fluid->liquid(), log);
+    warn_of_volume(step, *report.liquid, log);
+  }
   if (report.contact_position.n_crossings > 0) {
     log.warning(
         "Step {}: prescribed solids or pinned nodes press surfaces through each other at {} "

@@ -17,8 +17,10 @@ class RunWarnings {
  private:
   void warn_of_watches(long long step, const std::vector<WatchedLiquid>& watches,
                        const LiquidFluid<dim>& liquid, const Log& log);
+  void warn_of_volume(long long step, const LiquidReport& liquid, const Log& log);
 
-  bool of_viscous_step_ = false, of_stretch_ = false, of_unsettled_ = false, of_contact_ = false;
+  bool of_viscous_step_ = false, of_stretch_ = false, of_unsettled_ = false, of_contact_ = false,
+       of_volume_ = false;
   std::vector<char> of_watch_;
 };
 

@@ -10,10 +10,7 @@ template <int dim>
 class Neighbors {
  public:
   Neighbors(const MacDomain<dim>& domain, const SolidCells<dim>& solids)
-      : grid_(domain.grid), solids_(solids) {
-    for (const SolidDescription& solid : solids.state.surface->solids())
-      has_shells_ = has_shells_ || !solid.closed;
-  }
+      : grid_(domain.grid), solids_(solids), has_shells_(solids.has_shells()) {}
   /// The neighbour of a solid cell, or -1 if it is fluid that a shell hides.
   int operator()(int cell, int axis, int side) const {
     const int other = grid_.neighbor(cell, axis, side);
@@ -29,7 +26,7 @@ class Neighbors {
  private:
   const TiledGrid<dim>& grid_;
   const SolidCells<dim>& solids_;
-  bool has_shells_ = false;
+  bool has_shells_;
 };
 
 constexpr char no_layer = 127;

@@ -229,10 +229,7 @@ bool LiquidVolume<dim>::stays_dry(const CellField& phi, int cell) const {
 
 template <int dim>
 void LiquidVolume<dim>::list_beyond_shells(const SolidCells<dim>& solids, const CellField& phi) {
-  if (!solids.state.surface)
-    return;
-  const auto& all = solids.state.surface->solids();
-  if (std::all_of(all.begin(), all.end(), [](const SolidDescription& s) { return s.closed; }))
+  if (!solids.has_shells())
     return;
   std::vector<int> touching;
   domain_.grid.for_each_owned_cell([&](int cell) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct SolidCells {
   std::vector<char> near;  ///< a surface comes within h/2 of the cell; empty without a surface
   mutable std::shared_ptr<const CellGroups> closed_spaces;  ///< once somebody has looked for them
 
+  /// True if any of the solids encloses a volume (`closed`), or is a thin shell.
+  bool has_solids(bool closed) const {
+    const auto is_one = [=](const SolidDescription& solid) { return solid.closed == closed; };
+    return state.surface &&
+           std::any_of(state.surface->solids().begin(), state.surface->solids().end(), is_one);
+  }
+  bool has_shells() const { return has_solids(false); }
   bool is_fluid(int cell) const { return state.cells[cell] == CellState::fluid; }
   /// Returns the fluid cell beside a fluid cell if no surface comes between their centres, else -1.
   int seen_neighbor(const TiledGrid<dim>& grid, int cell, int axis, int side) const {

@@ -104,6 +104,7 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
   const TiledGrid<dim>& grid = domain_.grid;
   const double per_speed = step.dt * domain_.face_area(), h = domain_.spacing();
   std::vector<double> out(groups_.n, 0.0);
+  is_open_.assign(groups_.n, 0);
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const SideType type = domain_.boundary.side(axis, end).type;
@@ -117,13 +118,15 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
         const int body = open > 0 ? body_at(solids, phi, cell) : -1;
         if (body < 0)
           return;
-        double speed = (end == 0 ? -1 : 1) * step.advection_velocity[axis][face];
-        if (type == SideType::open)
-          speed = std::max(speed, 0.0);
-        out[body] += speed * per_speed * wet * open;
+        const double flux =
+            (end == 0 ? -1 : 1) * step.advection_velocity[axis][face] * per_speed * open;
+        if (type == SideType::open && flux > 0 && wet < 1)
+          is_open_[body] = 1;
+        if (type == SideType::inflow || flux > 0)
+          out[body] += flux * wet;
       });
     }
-  sum_over_ranks(grid.comm(), out);
+  sum_over_ranks(grid.comm(), out, is_open_);
   for (int group = 0; group < groups_.n; ++group) {
     // a long step may let out more than a small component has
     double& target = targets_.of_group[group];
@@ -136,11 +139,26 @@ void VolumeLedger<dim>::inherit(const SolidCells<dim>& before, const SolidCells<
                                 const CellField& phi, const std::vector<char>& swept, int reach) {
   measure_.prepare(solids, phi);
   regroup(before, solids, phi, swept, reach);
-  // Liquid that no cell showed at the start follows no flow: it belongs to no component that could
-  // take it.
-  const double gone = std::max(targets_.loose - volumes_.loose, 0.0);
-  targets_.loose -= gone;
-  targets_.lost += gone;
+  for (int group = 0; group < groups_.n && !is_open_.empty(); ++group)
+    if (is_open_[group] > 0)
+      targets_.of_group[group] = volumes_.volume[group];
+  is_open_.clear();
+}
+
+template <int dim>
+void VolumeLedger<dim>::share_unassigned(const SolidCells<dim>& solids, double unassigned) {
+  const double there = std::accumulate(volumes_.volume.begin(), volumes_.volume.end(), 0.0);
+  if (solids.has_shells() || there <= 0) {
+    // It must not come out beyond a shell, or there is nobody to take it.
+    const double gone = std::max(targets_.loose - volumes_.loose, 0.0);
+    targets_.loose -= gone;
+    targets_.lost += gone + unassigned;
+  } else {
+    const double given = unassigned + targets_.loose - volumes_.loose;
+    for (int group = 0; group < groups_.n && given != 0; ++group)
+      targets_.of_group[group] += given * volumes_.volume[group] / there;
+    targets_.loose = volumes_.loose;
+  }
 }
 
 template <int dim>
@@ -193,13 +211,24 @@ void VolumeLedger<dim>::regroup(const SolidCells<dim>& before, const SolidCells<
     claims[pair.second] += claim(pair, n);
     vanished[pair.second] = 0;
   }
-  std::vector<double> target(groups.n, 0.0);
-  for (const auto& [pair, n] : overlaps)
-    target[pair.first] += targets_.of_group[pair.second] * claim(pair, n) / claims[pair.second];
+  std::vector<double> target(groups.n, 0.0), is_open(is_open_.empty() ? 0 : groups.n, 0.0);
+  for (const auto& [pair, n] : overlaps) {
+    const double share = claim(pair, n) / claims[pair.second];
+    target[pair.first] += targets_.of_group[pair.second] * share;
+    if (!is_open_.empty())
+      is_open[pair.first] += is_open_[pair.second];
+  }
+  for (std::size_t old = 0; old < is_open_.size(); ++old)
+    if (is_open_[old] > 0)
+      vanished[old] = 0;  // the rest of it has gone through the side
+  double unassigned = 0;
   if (std::count(vanished.begin(), vanished.end(), 1) > 0)
-    give_to_nearest(solids, phi, groups, places_of(vanished, before, phi, swept), vanished, target);
+    unassigned = give_to_nearest(solids, phi, groups, places_of(vanished, before, phi, swept),
+                                 vanished, target);
   groups_ = std::move(groups);
   targets_.of_group = std::move(target);
+  is_open_ = std::move(is_open);
+  share_unassigned(solids, unassigned);
 }
 
 template <int dim>
@@ -223,9 +252,10 @@ std::vector<int> VolumeLedger<dim>::places_of(const std::vector<char>& vanished,
 }
 
 template <int dim>
-void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
-                                        const CellGroups& groups, const std::vector<int>& places,
-                                        std::vector<char> unassigned, std::vector<double>& target) {
+double VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
+                                          const CellGroups& groups, const std::vector<int>& places,
+                                          std::vector<char> unassigned,
+                                          std::vector<double>& target) {
   const TiledGrid<dim>& grid = domain_.grid;
   std::vector<int> nearest = groups.of_cell;
   spread_labels(domain_, solids, phi, giving_reach, nearest);
@@ -245,7 +275,8 @@ void VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const Cel
     unassigned[old] = 0;
   }
   if (std::count(unassigned.begin(), unassigned.end(), 1) > 0)
-    share_out(solids, groups, places, unassigned, target);
+    return share_out(solids, groups, places, unassigned, target);
+  return 0;
 }
 
 template <int dim>
@@ -267,10 +298,10 @@ std::vector<int> VolumeLedger<dim>::places_among(const CellGroups& spaces,
 }
 
 template <int dim>
-void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
-                                  const std::vector<int>& places,
-                                  const std::vector<char>& unassigned,
-                                  std::vector<double>& target) {
+double VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
+                                    const std::vector<int>& places,
+                                    const std::vector<char>& unassigned,
+                                    std::vector<double>& target) {
   const CellGroups& spaces = find_closed_spaces(domain_, solids);
   Overlaps of_old;
   domain_.grid.for_each_owned_cell([&](int cell) {
@@ -289,6 +320,7 @@ void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroup
       most = {n, pair.second};
   }
   std::vector<double> given(spaces.n, 0.0);
+  double left = 0;
   for (int old = 0; old < groups_.n; ++old) {
     if (!unassigned[old])
       continue;
@@ -296,11 +328,12 @@ void VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroup
     if (found != space_of_old.end() && volume_in_space[found->second.second] > 0)
       given[found->second.second] += targets_.of_group[old];
     else
-      targets_.lost += targets_.of_group[old];
+      left += targets_.of_group[old];
   }
   for (int group = 0; group < groups.n; ++group)
     if (given[space[group]] != 0)
       target[group] += given[space[group]] * volumes_.volume[group] / volume_in_space[space[group]];
+  return left;
 }
 
 template <int dim>
@@ -319,9 +352,12 @@ void VolumeLedger<dim>::create(const SolidCells<dim>& solids, const CellField& b
   measure_.prepare(solids, before);
   const CellGroups groups = find(solids, phi);
   const GroupVolumes there = measure_.measure(before, groups);
-  inherit(solids, solids, phi, {}, 1);
+  measure_.prepare(solids, phi);
+  const GroupVolumes now = measure_.measure(phi, groups);
+  targets_.loose += now.loose - there.loose;
+  regroup(solids, solids, phi, {}, 1);
   for (int group = 0; group < groups_.n; ++group)
-    targets_.of_group[group] += volumes_.volume[group] - there.volume[group];
+    targets_.of_group[group] += now.volume[group] - there.volume[group];
 }
 
 template <int dim>

@@ -28,7 +28,7 @@ VolumeParameters read_volume_correction(const ParameterList& list);
 /// State that the ledger keeps from step to step.
 struct VolumeTargets {
   std::vector<double> of_group;  ///< target volume of each liquid component [m^dim]
-  double loose = 0;  ///< remainder of the start's liquid that is beside no liquid cell [m^dim]
+  double loose = 0;  ///< liquid that is beside no liquid cell, as in slots of solids [m^dim]
   double lost = 0, shift = 0;  ///< [m^dim]
 };
 
@@ -46,10 +46,13 @@ class VolumeLedger {
   /// Takes the present volumes as targets. Collective.
   void begin(const SolidCells<dim>& solids, const CellField& phi);
   /// Subtracts the outflow through the sides of the domain in a step; through open sides no liquid
-  /// comes in. Called before phi is advected. Collective.
+  /// comes in. Called before phi is advected. A component that flows out where its surface meets an
+  /// open side has an open balance: of a film of two cells its outflow is known to a tenth, and
+  /// what is wrong in each step would drain the liquid upstream, or fill it. Collective.
   void flow_out(const SolidCells<dim>& solids, const CellField& phi,
                 const InterfaceStep<dim>& step);
-  /// Hands the targets on to the components of the advected phi. `swept` (may be empty): cells that
+  /// Hands the targets on to the components of the advected phi; of those with an open balance the
+  /// volume becomes the target. `swept` (may be empty): cells that
   /// have changed sides of a surface since `before`; `reach`: more than the displacement of any
   /// cell's content [cells]. Collective.
   void inherit(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
@@ -86,6 +89,10 @@ class VolumeLedger {
  private:
   CellGroups find(const SolidCells<dim>& solids, const CellField& phi) const;
   int body_at(const SolidCells<dim>& solids, const CellField& phi, int cell) const;
+  /// Gives a volume without a component in its closed space, as that of a pocket between bodies, to
+  /// all components by their volumes, and takes from them what has come to be loose, so that the
+  /// sum of all targets stays. With shells, through which nothing may go, it is lost.
+  void share_unassigned(const SolidCells<dim>& solids, double unassigned);
   /// `inherit` where the list of boxes is still good.
   void regroup(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
                const std::vector<char>& swept, int reach);
@@ -93,15 +100,15 @@ class VolumeLedger {
   /// around.
   std::vector<int> places_of(const std::vector<char>& vanished, const SolidCells<dim>& before,
                              const CellField& phi, const std::vector<char>& swept) const;
-  /// `places`: old bodies that have vanished.
-  void give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
-                       const CellGroups& groups, const std::vector<int>& places,
-                       std::vector<char> unassigned, std::vector<double>& target);
+  /// `places`: old bodies that have vanished. Returns what `share_out` does.
+  double give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
+                         const CellGroups& groups, const std::vector<int>& places,
+                         std::vector<char> unassigned, std::vector<double>& target);
   /// Gives the targets of vanished components without another one near to all components in the
-  /// same closed space.
-  void share_out(const SolidCells<dim>& solids, const CellGroups& groups,
-                 const std::vector<int>& places, const std::vector<char>& unassigned,
-                 std::vector<double>& target);
+  /// same closed space. Returns the rest that finds none [m^dim].
+  double share_out(const SolidCells<dim>& solids, const CellGroups& groups,
+                   const std::vector<int>& places, const std::vector<char>& unassigned,
+                   std::vector<double>& target);
   /// Returns the group that each component is in: a closed space, or an earlier component.
   std::vector<int> places_among(const CellGroups& spaces, const CellGroups& bodies) const;
   std::vector<double> wanted_shifts(const GroupVolumes& now) const;
@@ -114,6 +121,9 @@ class VolumeLedger {
   CellGroups groups_;
   VolumeTargets targets_;
   GroupVolumes volumes_;
+  /// Components with an open balance in this step, more than 0: their targets become the volumes
+  /// that `inherit` finds. Empty: none.
+  std::vector<double> is_open_;
 };
 
 }  // namespace lockstep

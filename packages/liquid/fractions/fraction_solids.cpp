@@ -258,6 +258,25 @@ double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
   return lost;
 }
 
+template <int dim>
+double share_among_liquid(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                          double volume, Fractions& fractions) {
+  if (volume == 0)
+    return 0;
+  const auto liquid_in = [&](int cell) {
+    const double liquid = solids.is_fluid(cell) ? fractions.liquid[cell] : 0;
+    return liquid > 0.5 ? liquid * fractions.open_part(cell) : 0;
+  };
+  double all = 0;
+  domain.grid.for_each_owned_cell([&](int cell) { all += liquid_in(cell); });
+  all = sum_all(domain.grid.comm(), all);
+  if (all == 0)
+    return volume;
+  domain.grid.for_each_owned_cell(
+      [&](int cell) { fractions.defect[cell] += volume * liquid_in(cell) / all; });
+  return 0;
+}
+
 template CellField open_parts<2>(const MacDomain<2>&, const SolidCells<2>&);
 template CellField open_parts<3>(const MacDomain<3>&, const SolidCells<3>&);
 template void bring_out_of_solids<2>(const MacDomain<2>&, const SolidCells<2>&, Fractions&);
@@ -272,5 +291,9 @@ template double take_along<2>(const MacDomain<2>&, const SolidCells<2>&, const M
 template double take_along<3>(const MacDomain<3>&, const SolidCells<3>&, const MovingSurface<3>&,
                               const NearbySurface<3>&, double, const std::vector<TakenLiquid>&,
                               Fractions&);
+template double share_among_liquid<2>(const MacDomain<2>&, const SolidCells<2>&, double,
+                                      Fractions&);
+template double share_among_liquid<3>(const MacDomain<3>&, const SolidCells<3>&, double,
+                                      Fractions&);
 
 }  // namespace lockstep

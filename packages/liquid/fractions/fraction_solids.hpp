@@ -37,4 +37,10 @@ double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                   const MovingSurface<dim>& surface, const NearbySurface<dim>& after, double dt,
                   const std::vector<TakenLiquid>& taken, Fractions& fractions);
 
+/// Adds a volume [cells], the same on all ranks, to the defects of all cells that are more than
+/// half full, in proportion to their liquid. Returns it if there are none, else 0. Collective.
+template <int dim>
+double share_among_liquid(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                          double volume, Fractions& fractions);
+
 }  // namespace lockstep

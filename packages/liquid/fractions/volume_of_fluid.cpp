@@ -191,8 +191,9 @@ bool VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
   const bool takes_along = sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(taken.size())) > 0;
   if (takes_along) {
     const auto after = step.kept.of(solids_.state.surface, domain_.grid, 2);
-    const double gone =
-        take_along(domain_, solids_, step.surface, *after, step.dt, taken, fractions_);
+    double gone = take_along(domain_, solids_, step.surface, *after, step.dt, taken, fractions_);
+    if (!solids_.has_shells())
+      gone = share_among_liquid(domain_, solids_, gone, fractions_);
     target_ -= gone;
     lost_ += gone;
   }
@@ -265,6 +266,11 @@ void VolumeOfFluid<dim>::advance(const InterfaceStep<dim>& step) {
   }
   if (parameters_.removes_fragments)
     remove_fragments(domain_, solids_, tiles, fractions_);
+  // A surface that takes a cell's centre hands its liquid on as a defect, and the fractions
+  // continued into the solid fill it again with the opposite one: paid apart, the two would raise
+  // and lower a whole component by what has not moved.
+  if (solids_.has_solids(true))
+    make_distance(tiles);
   const Repayment repayment = pay_back(
       domain_, solids_, phi_, parameters_.largest_shift * std::max(1.0, courant_), fractions_);
   n_bodies_ = repayment.n_bodies;

@@ -14,6 +14,9 @@ template <int dim>
 struct FreeSurface {
   /// phi on all stored cells [m]: negative in the liquid, extrapolated into solids.
   const CellField* distance = nullptr;
+  /// The same with the shift of the short-wave filter, of which surface tension takes the
+  /// curvature; null without tension.
+  const CellField* leading_distance = nullptr;
   /// Part of the way from the centre of a wet cell to that of a dry neighbour at which the surface
   /// is, in (0, 1]. Local.
   std::function<double(int wet, int dry)> crossing;

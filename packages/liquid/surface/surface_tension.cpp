@@ -160,7 +160,7 @@ Momentum<dim> push_surface(const MacDomain<dim>& domain, const MacGeometry<dim>&
                            FaceField<dim>& velocity) {
   const TiledGrid<dim>& grid = domain.grid;
   const auto& cells = geometry.state.cells;
-  const CellField& phi = *surface.distance;
+  const CellField& phi = *surface.leading_distance;
   Momentum<dim> impulse;
   for (int axis = 0; axis < dim; ++axis) {
     FaceMoments<dim> moments(grid, axis);

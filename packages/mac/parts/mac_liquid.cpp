@@ -37,14 +37,14 @@ std::vector<WaterLevel> MacLiquid<dim>::levels_at_solids() const {
 
 template <int dim>
 void MacLiquid<dim>::bound_pressure(CellField& pressure) const {
-  const CellField& phi = liquid_.interface().distance();
+  const FreeSurface<dim> surface = liquid_.surface();
   const double tension = flow_.accepted_step * liquid_.tension();
   const auto at_surface = [&](int wet, int dry, int axis, int end) {
     double value = flow_.geometry.in_bubble(dry) ? pressure[dry] : 0;
     if (tension > 0) {
       const int face = end == 0 ? wet : dry;
       const double place = 1 / flow_.geometry.face_table(axis, face).distance_factor;
-      value += tension * curvature(flow_.domain, phi, wet, axis, end, place);
+      value += tension * curvature(flow_.domain, *surface.leading_distance, wet, axis, end, place);
     }
     return value;
   };
@@ -59,6 +59,12 @@ void MacLiquid<dim>::move(double time, double dt, const MovingSurface<dim>& surf
                ? 0
                : flow_.geometry.face_table(axis, cell).open;
   };
+  // The surface of a source recedes at its velocity, whatever pressure and fall make of it within a
+  // step: it gives its width times its speed.
+  if (flow_.scalars.sources_push(time)) {
+    flow_.scalars.push(flow_.geometry, time, advection);
+    flow_.domain.halo.fill(advection);
+  }
   const InterfaceStep<dim> step{advection,
                                 surface,
                                 flow_.ray_halo,
