@@ -283,7 +283,7 @@ std::vector<LevelHalo::Peer> periodic_peers(const LatticeBlocks& blocks, const L
             ghost[axis] = side == 0 ? grid.n[axis] : -1;
             LevelHalo::Cell from = local_cell(grid, owned);
             LevelHalo::Cell to = local_cell(grid, ghost);
-            if (grid.n[axis] % 2 != 0)  // only the coarsest level: no sweep runs there
+            if (grid.n[axis] % 2 != 0)  // only the coarsest level, where no colour is exchanged
               to.colour = from.colour;
             peer.owned.push_back(from);
             peer.ghosts.push_back(to);

@@ -53,8 +53,8 @@ void add_even(const float* fine, int n, const FacePart& part, float* coarse) {
 class Coarsening {
  public:
   Coarsening(const LayoutLevel& fine_level, const NaturalStencil& fine,
-             const LayoutLevel& coarse_level, const CoarseningFactors& factors,
-             NaturalStencil& coarse)
+             const LayoutLevel& coarse_level, const LatticeBlocks& blocks,
+             const CoarseningFactors& factors, NaturalStencil& coarse)
       : fine_level_(fine_level),
         f_(fine_level.grid),
         c_(coarse_level.grid),
@@ -63,8 +63,10 @@ class Coarsening {
         coarse_(coarse),
         dirichlet_factor_(factors.dirichlet),
         face_part_(factors.unit) {
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3; ++axis) {
       transfer_.offset[axis] = (f_.begin[axis] >> 1) - c_.begin[axis];
+      wraps_[axis] = blocks.periodic[axis] && !c_.is_distributed;
+    }
   }
 
   void sum_rows();
@@ -85,6 +87,14 @@ class Coarsening {
     for (int axis = 0; axis < 3; ++axis)
       result[axis] += step[axis];
     return result;
+  }
+  /// On a level that every rank holds whole: the cell itself of a copy through periodic sides.
+  Cell wrapped(Cell coarse_cell) const {
+    for (int axis = 0; axis < f_.dimension; ++axis) {
+      if (wraps_[axis])
+        coarse_cell[axis] = (coarse_cell[axis] + c_.n[axis]) % c_.n[axis];
+    }
+    return coarse_cell;
   }
   bool is_stored(const Cell& coarse_cell) const {
     for (int axis = 0; axis < f_.dimension; ++axis) {
@@ -126,6 +136,7 @@ class Coarsening {
   NaturalStencil& coarse_;
   float dirichlet_factor_;
   FacePart face_part_;
+  std::array<bool, 3> wraps_{};  ///< by axis
   Transfer transfer_;
 };
 
@@ -168,7 +179,7 @@ void Coarsening::add_face(const Cell& a, const Cell& b, float value) {
   }
   if (distance != 1)
     return;
-  const Cell& upper = a[axis] > b[axis] ? a : b;
+  const Cell upper = wrapped(a[axis] > b[axis] ? a : b);
   if (is_stored(upper))
     coarse_.lower[axis][natural(upper)] += value;
 }
@@ -190,7 +201,7 @@ void Coarsening::move_face(const Cell& upper, int axis, const std::vector<char>&
 
 void Coarsening::move_cell(const Cell& cell, char destination) {
   const std::ptrdiff_t at = f_.natural(cell[0], cell[1], cell[2]);
-  const Cell from = parent(cell), to = new_parent(cell, destination);
+  const Cell from = parent(cell), to = wrapped(new_parent(cell, destination));
   const float dirichlet = dirichlet_factor_ * fine_.dirichlet[at];
   coarse_.dirichlet[natural(from)] -= dirichlet;
   const float reaction = fine_.reaction.empty() ? 0 : fine_.reaction[at];
@@ -304,7 +315,7 @@ void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_al
   if (level.landing)
     level.landing->halo.sum_natural_to_owner(data_of(sums_of(landed, level.grid.dimension)),
                                              data_of(arrays));
-  else if (moved)
+  else if (moved && level.grid.is_distributed)
     level.halo.sum_natural_to_owner(data_of(arrays));
   for (std::vector<float>* values : arrays) {
     if (moved)
@@ -327,7 +338,7 @@ Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
   if (coarse_level.landing)
     elsewhere.resize(coarse_level.landing->grid, has_reaction);
   NaturalStencil& landed = coarse_level.landing ? elsewhere : coarse;
-  Coarsening step(fine_level, fine, coarse_level.as_landed(), factors, landed);
+  Coarsening step(fine_level, fine, coarse_level.as_landed(), blocks, factors, landed);
   step.sum_rows();
   const auto destinations = destinations_behind_thin_walls(fine_level, fine, blocks.comm);
   if (!destinations.empty())

@@ -71,7 +71,6 @@ void Multigrid<dim>::solve_coarsest() {
   for (Eigen::Index r = 0; r < n; ++r)
     work.x[coarsest_slots_[r] / n_slots][coarsest_slots_[r] % n_slots] =
         static_cast<float>(coarsest_solution_[r]);
-  layout_->levels().back().halo.fill(work.x[0].data(), work.x[1].data());
 }
 
 template void Multigrid<2>::invert_coarsest(const NaturalStencil&);

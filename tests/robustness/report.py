@@ -9,6 +9,7 @@ import joints
 import known_failures
 import liquids
 import long_tension
+import seams
 from runs import program
 from scenes import random_scene
 
@@ -21,6 +22,7 @@ FAMILIES = {
     "joints": joints.FIRST_SEED,
     "trapped air": gases.FIRST_SEED,
     "semi-implicit tension": long_tension.FIRST_SEED,
+    "periodic seams": seams.FIRST_SEED,
 }
 # Solids, and how often each thing that a scene may say was drawn.
 FEATURES = {

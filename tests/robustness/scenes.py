@@ -12,6 +12,7 @@ import gases
 import joints
 import liquids
 import long_tension
+import seams
 import solvers
 from liquids import AXES
 from parameter_list import to_xml
@@ -343,15 +344,22 @@ def observers(world):
 def random_scene(seed):
     """The scene that this seed names, as a Scene."""
     world = World(seed)
+    at_seam = seed >= seams.FIRST_SEED
+    if at_seam:
+        seams.fill_tiles(world)
     side_lists = sides(world)
+    if at_seam:
+        seams.close_ring(world, side_lists)
     content = {"Dimension": world.dimension, "Title": f"Random scene {seed}",
                "Domain": {"Lower": world.lower, "Upper": world.upper, "Cells": world.cells, "Sides": side_lists},
                "Fluid": fluid(world, side_lists), "Solids": solids(world)}
-    if liquids.FIRST_SEED <= seed < joints.FIRST_SEED or seed >= gases.FIRST_SEED:
+    if at_seam:
+        seams.move_to_seam(world, content["Solids"], seed)
+    elif liquids.FIRST_SEED <= seed < joints.FIRST_SEED or seed >= gases.FIRST_SEED:
         liquids.fill_with_liquid(world, content, seed)
-    if seed >= long_tension.FIRST_SEED:
+    if long_tension.FIRST_SEED <= seed < seams.FIRST_SEED:
         long_tension.lengthen(world, content, seed)
-    elif seed >= gases.FIRST_SEED:
+    elif gases.FIRST_SEED <= seed < seams.FIRST_SEED:
         gases.trap_air(world, content, seed)
     content["Coupling"] = coupling(world)
     content["Contact"] = contact(world, content["Solids"])

@@ -164,6 +164,16 @@ TEST(Multigrid, APlateOnOddFaces) {
   expect_few_iterations(Problem<2>(flat, plate<2>(1.0 / 64, 27.1 / 64)), 11, 12);
 }
 
+/// The cells behind the plate, the last ones along x, go to the coarse cells beyond the seam.
+TEST(Multigrid, APlateBesideASeam) {
+  Case<3> scene(cube<3>(32), 1.0 / 32);
+  scene.all_periodic();
+  expect_few_iterations(Problem<3>(scene, plate<3>(1.0 / 32, 31.1 / 32)), 12, 12);
+  Case<2> flat(cube<2>(64), 1.0 / 64);
+  flat.all_periodic();
+  expect_few_iterations(Problem<2>(flat, plate<2>(1.0 / 64, 63.1 / 64)), 11, 12);
+}
+
 template <int dim>
 void expect_symmetric_and_positive(const Problem<dim>& problem, const MultigridOptions& options,
                                    const RCP<Vector>& u) {
@@ -186,6 +196,21 @@ TEST(Multigrid, IsSymmetricAndPositive) {
   for (const auto& surface : {ball<3>(1.0 / 24), plate<3>(1.0 / 24, 11.1 / 24)}) {
     const Problem<3> problem(scene, surface);
     expect_symmetric_and_positive(problem, {}, right_hand_side(problem));
+  }
+}
+
+/// Three cells are left along a periodic axis on the coarsest level, whose colours differ across
+/// the seam.
+TEST(Multigrid, AnOddCoarsestLevelThroughASeam) {
+  Case<2> scene(cube<2>(48), 1.0 / 48);
+  scene.all_periodic();
+  for (const auto& surface : {ball<2>(1.0 / 48), plate<2>(1.0 / 48, 47.1 / 48)}) {
+    const Problem<2> problem(scene, surface);
+    const auto u = make_vector(problem.fluid->pressure_map());
+    pseudo_random(*u, 5);
+    project_out(problem.system.null_space, *u);
+    expect_symmetric_and_positive(problem, {}, u);
+    expect_few_iterations(problem, 9, 8);
   }
 }
 
