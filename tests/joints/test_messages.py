@@ -48,6 +48,18 @@ class Messages(unittest.TestCase):
         self.assertEqual(code, 3, text)
         self.assertIn("loop that cannot close", text)
 
+    def test_a_motor_that_drives_an_arm_through_the_lid(self):
+        """The step went to zero, the energy to 1e19 J."""
+        arm = {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.06, .6)}, "Density": 2000., "Position": (1., .5)}
+        turns = joint("hinge", ("space", "Arm"), (1., .8), **motor(Type="table", Times=(0., 10.), Values=(0., 30.)))
+        scene = tank({"Arm": arm}, {"Motor": turns}, "mixed face", step=.01, end=2.)
+        scene["Domain"] = {"Upper": (2., 1.), "Cells": (48, 24)}
+        del scene["Contact"]
+        code, text = message(scene)
+        self.assertEqual(code, 3, text)
+        for part in ("\"Arm\"", "the side \"y upper\"", "of a cell", "prescribed", "limited torque"):
+            self.assertIn(part, text)
+
     def test_a_ball_that_may_not_turn(self):
         solids = {"A": unseen_box((0., 0., 0.), (1., 2., -1.))}
         code, text = message(vacuum(solids, {"S": joint("ball", ("space", "A"), (.1, .2, 0.), **{"Limits": {"Upper": 0.}})}, .02, 1.))

@@ -43,6 +43,20 @@ class SolidsAlone(unittest.TestCase):
     def elastic_energies(self, *arguments, **more):
         return column(table(self.run_scene(scene(*arguments, **more)) / "history.csv"), "elastic_energy")
 
+    def test_a_disc_rolls_down_a_slope(self):
+        """With 2/3 of g sin(20 deg), 2.235 m/s^2; where the floor met it ahead of its centre it took 1.55."""
+        disc = {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .1, "Mesh Spacing": .01}, "Density": 1000.,
+                "Position": (.3, .1), "Friction": .3}
+        for step in (.01, .005):
+            text = xml("Scene", {
+                "Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (3., 1.), "Cells": (30, 10),
+                                           "Sides": {"y lower": {"Type": "slip wall"}, "y upper": {"Type": "open"}}},
+                "Fluid": {"Density": .001, "Gravity": (3.35522, -9.21838)}, "Solids": {"Disc": disc},
+                "Coupling": {"Type": "mixed face"}, "Time": {"End": 1., "Fixed Step": step}, "Output": {"Frames": False}})
+            end = table(self.run_scene(text) / "bodies.csv")[-1]
+            self.assertAlmostEqual(float(end["vx"]), 2.235, delta=.02 * 2.235)
+            self.assertAlmostEqual(-.1 * float(end["wz"]), float(end["vx"]), delta=.01)
+
     def test_stiff_blocks_that_turn_are_settled(self):
         # Turned by 0.4 in a step, whose chords stretch it to far more energy than it has.
         turns = block((-.5, 0.), 1e7, **{"Angular Velocity": 20.})
