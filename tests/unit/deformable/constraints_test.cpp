@@ -226,8 +226,9 @@ TEST(SubSteps, AreAsFewAsTheStepNeeds) {
 
 /// Every node of a tethered block is one oscillator, of omega = 3: the force is its path's mean.
 TEST(SubSteps, ForceIsTheMeanOverThePath) {
-  const std::string tethered =
-      box("1, 0.5, 0.5", "0.25") + material("corotated") + number("Density", "4") + sub_steps("5");
+  const std::string tethered = box("1, 0.5, 0.5", "0.25") + material("corotated") +
+                               number("Density", "4") + text("Time Integration", "semi-implicit") +
+                               sub_steps("5");
   const auto ends = numbers("Lower", "-1, -1, -1") + numbers("Upper", "1, 1, 1");
   const auto solids =
       model<3>({tethered + list("Tethers", list("all", ends + number("Stiffness", "9") +
@@ -276,7 +277,8 @@ std::vector<Point<2>> elastic_impulses(DeformableSolids<2>& solids) {
 TEST(SubSteps, BodiesSideBySideFeelWhatEachFeelsAlone) {
   const auto stretched = [](const std::string& stiffness, const std::string& place) {
     return box("1, 0.5", "0.25") + material("corotated", stiffness) + number("Density", "1") +
-           numbers("Stretch", "1.1, 0.95") + numbers("Position", place) + sub_steps("40");
+           numbers("Stretch", "1.1, 0.95") + numbers("Position", place) +
+           text("Time Integration", "semi-implicit") + sub_steps("40");
   };
   // Two take as many sub-steps, one more, one none.
   const std::vector<std::string> contents{stretched("1e4", "0, 0"), stretched("4e4", "2, 0"),
@@ -301,7 +303,8 @@ TEST(SubSteps, BodiesSideBySideFeelWhatEachFeelsAlone) {
 TEST(SubSteps, MeansAreFoundAnewWhereTheyDiffer) {
   const std::string content =
       box("1, 0.5", "0.25") + material("corotated", "1e4") + number("Density", "1") +
-      numbers("Stretch", "1.1, 0.95") + sub_steps("40") +
+      numbers("Stretch", "1.1, 0.95") + text("Time Integration", "semi-implicit") +
+      sub_steps("40") +
       list("Pinned", list("end", numbers("Lower", "-0.5, -0.25") + numbers("Upper", "-0.5, 0.25") +
                                      number("End", "1")));
   const double dt = 4 / 20. * model<2>({content})->largest_stable_step();
