@@ -8,8 +8,26 @@
 
 namespace lockstep {
 
+namespace {
+std::string frames_note(const SceneOptions& options) {
+  if (!options.output.frames)
+    return "none";
+  if (!options.output.frame_interval)
+    return options.time.most_steps > 0
+               ? fmt::format("about 100: each hundredth of the run, of {:g} s or {} steps",
+                             options.time.end - options.time.start, options.time.most_steps)
+               : fmt::format("about 100: every {:g} s, a hundredth of the run",
+                             (options.time.end - options.time.start) / 100);
+  return *options.output.frame_interval == 0
+             ? "every step"
+             : fmt::format("every {:g} s", *options.output.frame_interval);
+}
+}  // namespace
+
 template <int dim>
-std::string explanation(Components<dim>& components, PaperStep<dim>& scheme, bool reads_pressure) {
+std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
+                        const SceneOptions& options) {
+  const bool reads_pressure = options.step.prediction.incremental_pressure;
   const auto& fluid = *components.fluid;
   const auto& solids = *components.solids;
   const Communicator& comm = solids.comm();
@@ -60,7 +78,7 @@ std::string explanation(Components<dim>& components, PaperStep<dim>& scheme, boo
   return text;
 }
 
-template std::string explanation(Components<2>&, PaperStep<2>&, bool);
-template std::string explanation(Components<3>&, PaperStep<3>&, bool);
+template std::string explanation(Components<2>&, PaperStep<2>&, const SceneOptions&);
+template std::string explanation(Components<3>&, PaperStep<3>&, const SceneOptions&);
 
 }  // namespace lockstep

@@ -47,9 +47,12 @@ void declare_time(ParameterList& scene, bool has_joints) {
 void declare_output(ParameterList& scene) {
   ParameterList& output = declare_list(scene, "Output", "Files that the run writes.");
   declare(output, "Frames", true, "Write frames.h5 and frames.xmf.");
-  declare_at_least(output, "Frame Interval", 0., 0.,
-                   "Simulated time between frames [s]: each comes with the first step at or past a "
-                   "multiple of it after the start, the last at the end. 0: every step.");
+  declare_optional<double>(
+      output, "Frame Interval",
+      "Simulated time between frames [s]: each comes with the first step at or past a multiple of "
+      "it after the start, the last at the end. 0: every step; left out: every hundredth of the "
+      "run, of its time or of its \"Steps\", whichever ends it.");
+  set_at_least(output, "Frame Interval", 0.);
   ParameterList& checkpoints = declare_list(output, "Checkpoints", "From which a run goes on.");
   declare_at_least(
       checkpoints, "Interval", 0., 0.,

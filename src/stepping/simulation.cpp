@@ -36,6 +36,13 @@ double n_cells(const FluidDiscretization<dim>& fluid) {
   return boxes.empty() ? double(fluid.pressure_map()->getGlobalNumElements()) : n;
 }
 
+/// In simulated time, or without an interval in parts of the run.
+Schedule frame_schedule(const SceneOptions& options) {
+  if (options.output.frame_interval)
+    return {options.time.start, *options.output.frame_interval};
+  return {0, 0.01};
+}
+
 /// Seconds of wall time after which a signal ends a step between its stages, without a checkpoint.
 /// Batch systems kill 30 s after they have asked.
 constexpr double long_step = 20;
@@ -134,9 +141,14 @@ bool Simulation<dim>::finished() const {
 template <int dim>
 double Simulation<dim>::fraction_done() const {
   const TimeOptions& time = scene_options_.time;
-  const double by_time = (scheme_->time() - time.start) / (time.end - time.start);
-  const double by_steps = time.most_steps > 0 ? double(step_) / double(time.most_steps) : 0;
-  return std::max(by_time, by_steps);
+  return part_of_run(time, scheme_->time() - time.start, step_);
+}
+
+template <int dim>
+bool Simulation<dim>::reach_frame() {
+  if (scene_options_.output.frame_interval)
+    return frame_times_.reach(scheme_->time(), last_dt_);
+  return frame_times_.reach(fraction_done(), part_of_run(scene_options_.time, last_dt_, 1));
 }
 
 template <int dim>
@@ -283,7 +295,7 @@ void Simulation<dim>::write_rows() {
 template <int dim>
 void Simulation<dim>::write_what_is_due() {
   const OutputOptions& output = scene_options_.output;
-  const bool is_due = frame_times_.reach(scheme_->time(), last_dt_) || frames_.n_frames() == 0;
+  const bool is_due = reach_frame() || frames_.n_frames() == 0;
   if (output.frames && is_due)
     last_frame_ = scheme_->time();
   if (output.frames && (is_due || finished()))

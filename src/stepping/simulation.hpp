@@ -42,9 +42,7 @@ class Simulation {
              const RunOptions& options, const Communicator& comm, const Log& log);
 
   /// Tells what is active, why, and what it costs in memory; for --explain and --validate.
-  std::string explain() {
-    return explanation(components_, *scheme_, scene_options_.step.prediction.incremental_pressure);
-  }
+  std::string explain() { return explanation(components_, *scheme_, scene_options_); }
   /// Runs to the end or to a signal; returns the exit code (0, or 128 + signal). Collective.
   int run();
 
@@ -98,6 +96,8 @@ class Simulation {
   void resume_frames();
   double fraction_done() const;
 
+  /// After each step in turn, as Schedule::reach: whether a frame is due.
+  bool reach_frame();
   std::unique_ptr<FolderLock> folder_lock_;  // on rank 0, until the last is written
   ParameterList scene_;
   RunOptions options_;

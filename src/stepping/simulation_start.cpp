@@ -70,7 +70,7 @@ void Simulation<dim>::resume_frames() {
   const double now = scheme_->time();
   const bool was_due = last_frame_ == never_ || last_frame_ >= now;
   frames_.resume(was_due || finished() ? now : std::nextafter(now, never_));
-  frame_times_.reach(now, last_dt_);
+  reach_frame();
 }
 
 template <int dim>

@@ -5,6 +5,12 @@
 
 namespace lockstep {
 
+double part_of_run(const TimeOptions& options, double time, long long steps) {
+  const double by_time = time / (options.end - options.start);
+  const double by_steps = options.most_steps > 0 ? double(steps) / double(options.most_steps) : 0;
+  return std::max(by_time, by_steps);
+}
+
 double even_step(const TimeOptions& time) {
   const double length = time.end - time.start;
   if (time.fixed_step == 0 || (time.most_steps > 0 && time.most_steps * time.fixed_step < length))

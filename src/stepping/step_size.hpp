@@ -11,6 +11,9 @@ struct TimeOptions {
 };
 
 /// The fixed step, made a little shorter so that steps of one length end at the end, if they get
+/// Part of the run that `time` [s] is of its time, or `steps` of its steps, whichever is more [1].
+double part_of_run(const TimeOptions& options, double time, long long steps);
+
 /// there: the forces of a last one that is much shorter would be those of another step's errors.
 /// 0 without a fixed step.
 double even_step(const TimeOptions& time);

@@ -74,6 +74,23 @@ TEST(StepSize, TheLastStepsEndAtTheEnd) {
   EXPECT_EQ(step_to_end(time, 0.95, 0.1), 1 - 0.95);
 }
 
+TEST(StepSize, SaysWhatBoundsIt) {
+  TimeOptions time = until(10);
+  EXPECT_EQ(wanted_step(time, 1e-6).reason, "");  // the CFL number
+  EXPECT_EQ(wanted_step(time, 1).reason, "Largest Step");
+  EXPECT_EQ(shorter(wanted_step(time, 1), {1e-3, "gravity waves"}).reason, "gravity waves");
+  time.fixed_step = 0.25;
+  EXPECT_EQ(wanted_step(time, 1e-6).reason, "Fixed Step");
+}
+
+TEST(StepSize, IsAPartOfTheRunByTimeOrBySteps) {
+  TimeOptions time = until(10);
+  EXPECT_DOUBLE_EQ(part_of_run(time, 2.5, 7), 0.25);
+  time.most_steps = 20;
+  EXPECT_DOUBLE_EQ(part_of_run(time, 2.5, 7), 0.35);
+  EXPECT_DOUBLE_EQ(part_of_run(time, 5, 7), 0.5);
+}
+
 TEST(StepSize, ManyFixedStepsAddedUpTakeNoStepMore) {
   TimeOptions time = until(12);
   time.fixed_step = 1e-3;
