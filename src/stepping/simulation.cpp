@@ -114,21 +114,22 @@ void Simulation<dim>::check_names() const {
 }
 
 template <int dim>
-double Simulation<dim>::next_step() const {
+StepBound Simulation<dim>::next_step() {
   const TimeOptions& time = scene_options_.time;
   // A resting fluid still has to resolve moving solids.
   const double suggested =
       components_.fluid->suggested_step(time.cfl, components_.solids->largest_surface_speed());
-  double dt = wanted_step(time, suggested);
-  dt = std::min(
-      {dt, components_.fluid->largest_stable_step(), components_.solids->largest_stable_step()});
+  const StepBound wanted = wanted_step(time, suggested);
+  StepBound step = shorter(wanted, components_.fluid->largest_stable_step());
+  step = shorter(step, components_.solids->largest_stable_step());
+  warnings_.before_step(step_ + 1, step, wanted, log_);
   // A bit of difference between ranks would let one of them take a step more.
-  dt = min_all(comm_, dt);
-  check_solve(scheme_->time() + dt > scheme_->time(),
+  step.dt = min_all(comm_, step.dt);
+  check_solve(scheme_->time() + step.dt > scheme_->time(),
               "The step of {} s at {} s is lost in the round-off of the time; something moves too "
               "fast, or a body is too stiff for explicit forces.",
-              dt, scheme_->time());
-  return step_to_end(time, scheme_->time(), dt);
+              step.dt, scheme_->time());
+  return shorter(step, {step_to_end(time, scheme_->time(), step.dt), "end of the run"});
 }
 
 template <int dim>
@@ -248,11 +249,12 @@ bool Simulation<dim>::step() {
     return false;
   recorded([&] {
     const auto step_start = Clock::now();
-    const double dt = next_step();
-    if (!take_step(dt, step_start))
+    const StepBound next = next_step();
+    if (!take_step(next.dt, step_start))
       return;
     ++step_;
-    last_dt_ = dt;
+    last_dt_ = next.dt;
+    bound_of_step_ = next.reason;
     summary_.count(*report_);
     warnings_.after_step(step_, *report_, components_, log_);
     step_seconds_ = seconds_since(step_start);
@@ -293,6 +295,7 @@ void Simulation<dim>::write_rows() {
 }
 
 template <int dim>
+  progress.bound = bound_of_step_;
 void Simulation<dim>::write_what_is_due() {
   const OutputOptions& output = scene_options_.output;
   const bool is_due = reach_frame() || frames_.n_frames() == 0;

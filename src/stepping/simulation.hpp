@@ -72,7 +72,7 @@ class Simulation {
   Frame frame() const;
 
  private:
-  double next_step() const;
+  StepBound next_step();
   bool finished() const;
   /// False if a signal ended it between two of its stages, because it takes long. Collective.
   bool take_step(double dt, std::chrono::steady_clock::time_point start);
@@ -95,10 +95,10 @@ class Simulation {
   void load_checkpoint();
   void resume_frames();
   double fraction_done() const;
-
   /// After each step in turn, as Schedule::reach: whether a frame is due.
   bool reach_frame();
   std::unique_ptr<FolderLock> folder_lock_;  // on rank 0, until the last is written
+
   ParameterList scene_;
   RunOptions options_;
   SceneOptions scene_options_;
@@ -119,6 +119,7 @@ class Simulation {
   double last_frame_ = never_;                ///< time of the last frame that was due [s]
   double fraction_at_begin_ = 0;              ///< part of the run done before this program [1]
   const DumpingStrategy* dumping_ = nullptr;  ///< strategy of --dump-system; `components_` owns it
+  std::string bound_of_step_;                 ///< bound of the last step; empty: the CFL number
   std::optional<StepReport<dim>> report_;     ///< report of the last step
   double step_seconds_ = 0;                   ///< wall time of the last step [s]
   int signal_ = 0;                            ///< signal that ended the run; 0: none

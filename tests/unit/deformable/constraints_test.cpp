@@ -233,7 +233,7 @@ TEST(SubSteps, ForceIsTheMeanOverThePath) {
   const auto solids =
       model<3>({tethered + list("Tethers", list("all", ends + number("Stiffness", "9") +
                                                            numbers("Offset", "0, 0.1, 0")))});
-  const double stable = solids->largest_stable_step() / 2.5;
+  const double stable = solids->largest_stable_step().dt / 2.5;
   const double dt = 2.2 * stable;
   solids->begin_step(0, dt);
   const SubSteps steps = sub_steps_for(dt, stable, 5);
@@ -283,7 +283,7 @@ TEST(SubSteps, BodiesSideBySideFeelWhatEachFeelsAlone) {
   // Two take as many sub-steps, one more, one none.
   const std::vector<std::string> contents{stretched("1e4", "0, 0"), stretched("4e4", "2, 0"),
                                           stretched("1", "4, 0"), stretched("1e4", "6, 0")};
-  const double dt = 4 / 20. * model<2>({contents[0]})->largest_stable_step();
+  const double dt = 4 / 20. * model<2>({contents[0]})->largest_stable_step().dt;
   const auto together = model<2>(contents);
   together->begin_step(0, dt);
   std::vector<Point<2>> alone;
@@ -307,7 +307,7 @@ TEST(SubSteps, MeansAreFoundAnewWhereTheyDiffer) {
       sub_steps("40") +
       list("Pinned", list("end", numbers("Lower", "-0.5, -0.25") + numbers("Upper", "-0.5, 0.25") +
                                      number("End", "1")));
-  const double dt = 4 / 20. * model<2>({content})->largest_stable_step();
+  const double dt = 4 / 20. * model<2>({content})->largest_stable_step().dt;
   const auto solids = model<2>({content});
   for (const auto& [time, length] :
        {std::pair(0., dt), std::pair(0.1, dt), std::pair(0.2, 2 * dt), std::pair(2., 2 * dt)}) {
@@ -329,7 +329,7 @@ TEST(SubSteps, StiffBodyIsStableAtTenTimesItsStep) {
       return state.elastic_energy + state.kinetic_energy;
     };
     const double before = energy();
-    const double dt = 10 / 20. * alone.solids.largest_stable_step();
+    const double dt = 10 / 20. * alone.solids.largest_stable_step().dt;
     for (int i = 0; i < 100; ++i) {
       alone.step(dt);
       EXPECT_LE(energy(), 1.2 * before) << i;

@@ -23,8 +23,8 @@ TEST(StepSize, NothingPassesMoreCellsThanTheCflNumber) {
   box.n_cells = {2, 2};
   box.spacing = 0.02;
   const FakeFluid<2> resting(box, Tpetra::getDefaultComm());
-  EXPECT_EQ(wanted_step(until(10), resting.suggested_step(0.5, 0)), 0.1);
-  EXPECT_DOUBLE_EQ(wanted_step(until(10), resting.suggested_step(0.5, 2)), 0.005);
+  EXPECT_EQ(wanted_step(until(10), resting.suggested_step(0.5, 0)).dt, 0.1);
+  EXPECT_DOUBLE_EQ(wanted_step(until(10), resting.suggested_step(0.5, 2)).dt, 0.005);
   // The velocity that gravity adds within the step counts as well.
   box.gravity = {0, -14};
   FakeFluid<2> fluid(box, Tpetra::getDefaultComm());
@@ -38,7 +38,7 @@ TEST(StepSize, NothingPassesMoreCellsThanTheCflNumber) {
 TEST(StepSize, AFixedStepIsTaken) {
   TimeOptions time = until(10);
   time.fixed_step = 0.25;
-  EXPECT_EQ(wanted_step(time, 1e-6), 0.25);
+  EXPECT_EQ(wanted_step(time, 1e-6).dt, 0.25);
 }
 
 TEST(StepSize, FixedStepsDivideTheTimeEvenly) {
