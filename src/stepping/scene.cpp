@@ -54,10 +54,11 @@ void declare_output(ParameterList& scene) {
       "run, of its time or of its \"Steps\", whichever ends it.");
   set_at_least(output, "Frame Interval", 0.);
   ParameterList& checkpoints = declare_list(output, "Checkpoints", "From which a run goes on.");
-  declare_at_least(
-      checkpoints, "Interval", 0., 0.,
+  declare_optional<double>(
+      checkpoints, "Interval",
       "Simulated time between two [s], counted as that of frames; 0: only at the end and when "
-      "stopped.");
+      "stopped; left out: every ten minutes on the clock, too.");
+  set_at_least(checkpoints, "Interval", 0.);
   declare_at_least(checkpoints, "Count", 2, 1, "How many are kept.");
   declare_choice(output, "Precision", "single", {"single", "double"}, "Of the fields in frames.");
 }
@@ -276,8 +277,10 @@ SceneOptions scene_options(const ParameterList& scene) {
               options.time.start);
   const ParameterList& output = scene.sublist("Output");
   options.output.frames = output.get<bool>("Frames");
-  options.output.frame_interval = output.get<double>("Frame Interval");
-  options.output.checkpoint_interval = output.sublist("Checkpoints").get<double>("Interval");
+  if (output.isParameter("Frame Interval"))
+    options.output.frame_interval = output.get<double>("Frame Interval");
+  if (output.sublist("Checkpoints").isParameter("Interval"))
+    options.output.checkpoint_interval = output.sublist("Checkpoints").get<double>("Interval");
   options.output.keep_checkpoints = output.sublist("Checkpoints").get<int>("Count");
   options.output.precision = output.get<std::string>("Precision");
   const ParameterList& solver = scene.sublist("Solver");

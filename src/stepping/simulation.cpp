@@ -47,6 +47,10 @@ Schedule frame_schedule(const SceneOptions& options) {
 /// Batch systems kill 30 s after they have asked.
 constexpr double long_step = 20;
 
+/// Seconds of wall time between checkpoints that no interval is given for: as much as one loses to
+/// a power cut without regret, and enough that writing them does not count.
+constexpr double seconds_between_checkpoints = 600;
+
 /// Thrown between the stages of a long step after a signal, on all ranks.
 struct StepStopped {
   int signal;
@@ -71,8 +75,10 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
               {scene_options_.output.precision == "double" ? Precision::double_precision
                                                            : Precision::single_precision,
                0}),
-      frame_times_(scene_options_.time.start, scene_options_.output.frame_interval),
-      checkpoint_times_(scene_options_.time.start, scene_options_.output.checkpoint_interval) {
+      frame_times_(frame_schedule(scene_options_)),
+      checkpoint_times_(scene_options_.time.start,
+                        scene_options_.output.checkpoint_interval.value_or(0)),
+      checkpoint_clock_(seconds_between_checkpoints) {
   if (options.end_time)
     scene_options_.time.end = *options.end_time;
   if (options.steps)
@@ -303,8 +309,16 @@ void Simulation<dim>::write_what_is_due() {
     last_frame_ = scheme_->time();
   if (output.frames && (is_due || finished()))
     write_frame();
-  if (output.checkpoint_interval > 0 && checkpoint_times_.reach(scheme_->time(), last_dt_))
+  if (checkpoint_is_due())
     write_checkpoint();
+}
+
+template <int dim>
+bool Simulation<dim>::checkpoint_is_due() {
+  const std::optional<double>& interval = scene_options_.output.checkpoint_interval;
+  if (!interval)
+    return checkpoint_clock_.reach(comm_);
+  return *interval > 0 && checkpoint_times_.reach(scheme_->time(), last_dt_);
 }
 
 template <int dim>

@@ -78,6 +78,7 @@ class Simulation {
   bool take_step(double dt, std::chrono::steady_clock::time_point start);
   void write_rows();
   void write_what_is_due();
+  bool checkpoint_is_due();
   /// Calls f; what it throws is told to summary.json too.
   template <typename Function>
   void recorded(const Function& f);
@@ -110,7 +111,9 @@ class Simulation {
   RunTables<dim> tables_;
   ObserverTables<dim> observers_;
   FrameWriter frames_;
-  Schedule frame_times_, checkpoint_times_;
+  Schedule frame_times_;  ///< in simulated time or, without an interval, in parts of the run
+  Schedule checkpoint_times_;
+  WallClockSchedule checkpoint_clock_;  ///< where the scene gives no interval of them
   static constexpr double never_ = -1e300;
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;

@@ -113,7 +113,7 @@ class Faults(unittest.TestCase):
             self.assert_restarts(folder)
 
     def test_signals(self):
-        for number in (signal.SIGTERM, signal.SIGINT):
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU):
             with self.subTest(signal=number.name), tempfile.TemporaryDirectory() as folder:
                 history = Path(folder) / "output" / "history.csv"
                 with started(folder) as process:
@@ -130,6 +130,29 @@ class Faults(unittest.TestCase):
         for ranks in (1, 2):
             with self.subTest(ranks=ranks), tempfile.TemporaryDirectory() as folder:
                 output = Path(folder) / "output"
+    def test_signals_that_end_no_run(self):
+        """SIGPIPE, and what nohup has ignored; SIGXCPU, which comes each second, is no third signal."""
+        with tempfile.TemporaryDirectory() as folder:
+            history = Path(folder) / "output" / "history.csv"
+            (Path(folder) / "scene.xml").write_text(SCENE)
+            process = subprocess.Popen(["nohup", *command(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            process.stdout.close()  # nobody reads the log any more
+            wait_for(lambda: history.exists() and len(read_table(history)) > 2, process)
+            process.send_signal(signal.SIGHUP)
+            self.assertEqual(process.wait(), 0)
+            self.assert_equals_straight_run(folder)
+        with tempfile.TemporaryDirectory() as folder:
+            history = Path(folder) / "output" / "history.csv"
+            with started(folder) as process:
+                wait_for(lambda: history.exists() and len(read_table(history)) > 2, process)
+                process.send_signal(signal.SIGSTOP)
+                for _ in range(4):
+                    process.send_signal(signal.SIGXCPU)
+                    process.send_signal(signal.SIGCONT)
+                    time.sleep(.001)
+                output, _ = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 128 + signal.SIGXCPU, output)
+
                 with started(folder, *CHECKPOINTS, "--set", "Time/End=1e6") as process:
                     wait_for(lambda: newest_checkpoint(folder), process)
                     process.send_signal(signal.SIGSTOP)
