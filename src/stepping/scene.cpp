@@ -10,6 +10,7 @@
 #include "base/xml_text.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/parameter_rule.hpp"
+#include "parameters/shape_sizes.hpp"
 #include "stepping/view.hpp"
 
 namespace lockstep {
@@ -183,9 +184,15 @@ template <int dim>
 std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries,
                                                const ParameterList& scene,
                                                const std::string& scene_file,
-                                               const SolidSetting<dim>& setting) {
+                                               const SolidSetting<dim>& setting,
+                                               double domain_length) {
   const ParameterList& solids = scene.sublist("Solids");
   check_solid_names(solids);
+  for (const auto& [name, entry] : entries(solids)) {
+    const ParameterList& solid = solids.sublist(name);
+    if (solid.isSublist("Geometry"))
+      check_body_size(solid.sublist("Geometry"), setting.smallest_length, domain_length, dim, name);
+  }
   std::vector<std::unique_ptr<SolidModel<dim>>> models;
   for (const auto& plugin : registries.solids) {
     NamedLists lists;
@@ -306,7 +313,8 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
   const SolidSetting<dim> solid_setting{fluid.smallest_length(), fluid.gravity(),
                                         scene.sublist("Time").get<double>("Start"), comm,
                                         fluid.density(bounds.center())};
-  components.solids = build_solids<dim>(registries, scene, scene_file, solid_setting);
+  components.solids =
+      build_solids<dim>(registries, scene, scene_file, solid_setting, bounds.sizes().maxCoeff());
   components.coupling = registries.couplings.create(type_of("Coupling"), scene.sublist("Coupling"));
   const ParameterList& strategy = scene.sublist("Solver").sublist("Strategy");
   components.strategy = registries.strategies.create(strategy.get<std::string>("Type"), strategy);
