@@ -81,6 +81,7 @@ void Simulation<dim>::load_checkpoint() {
   observers_.load(checkpoint);
   step_ = checkpoint.header().step;
   last_dt_ = checkpoint.file().read_attribute<double>("/", "last dt");
+  checkpoint.check(last_dt_ >= 0, fmt::format("its last step is {} s long", last_dt_));
   if (checkpoint.file().has_attribute("/", "last frame"))  // older ones say nothing of it
     last_frame_ = checkpoint.file().read_attribute<double>("/", "last frame");
   scheme_->resume(checkpoint.header().time, step_, last_dt_);
