@@ -71,10 +71,13 @@ std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
   line("contact", components.contact ? components.contact->name() : "none");
   line("pressure regions", fmt::format("{}, null space of dimension {}", fluid.regions().n_regions,
                                        scheme.system().null_space().size()));
-  line("memory so far",
-       fmt::format(
-           "{:.0f} MB over all ranks, {:.0f} bytes a cell", memory.all_ranks_mb,
-           1e6 * memory.all_ranks_mb / double(fluid.pressure_map()->getGlobalNumElements())));
+  line("frames", frames_note(options));
+  const auto n_pressures = double(fluid.pressure_map()->getGlobalNumElements());
+  line("memory so far", fmt::format("{:.0f} MB over all ranks{}", memory.all_ranks_mb,
+                                    n_pressures == 0  // an empty tank that sources are to fill
+                                        ? ""
+                                        : fmt::format(", {:.0f} bytes a cell",
+                                                      1e6 * memory.all_ranks_mb / n_pressures)));
   return text;
 }
 

@@ -233,11 +233,11 @@ CASES = [
          **source("box", value("Lower", "Array(double)", "{0.6, 0}") + value("Upper", "Array(double)", "{0.4, 1}"))),
     Case("a ball with corners", ["\"Sources/Jet\"", "the shape \"ball\" has no \"Lower\""],
          **source("ball", value("Lower", "Array(double)", "{0.2, 0}") + value("Upper", "Array(double)", "{0.4, 1}"))),
+    Case("a source outside of the domain", ["\"Jet\"", "outside of the domain"],
+         **source("box", value("Lower", "Array(double)", "{1.2, 0}") + value("Upper", "Array(double)", "{1.4, 1}"))),
     Case("a box with a radius", "the shape \"box\" has no \"Radius\"", **source("box", value("Radius", "double", 1))),
 
     # The bodies.
-    Case("a flat spindle with widths", ["\"Sections\"", "has 7 numbers; it takes 2"],
-         change=[(BODY_TYPE, value("Type", "string", "deformable body")), (GEOMETRY, SPINDLE),
     Case("a swing of nothing", ["\"Ball/Motion\"", "moves nothing", "\"static\""],
          change=(DENSITY, DENSITY + SLIDING.replace("{0, 0.1}", "{0, 0}"))),
     Case("a table of nothing", ["\"Ball/Motion\"", "moves nothing", "\"Displacements\""],
@@ -251,6 +251,8 @@ CASES = [
          change=(RADIUS, value("Radius", "double", "3000"))),
     Case("a mesh of too many elements", ["\"Ball/Geometry\"", "elements"], scene=SCENE_3D,
          change=(RADIUS, RADIUS + value("Mesh Spacing", "double", "1e-4"))),
+    Case("a flat spindle with widths", ["\"Sections\"", "has 7 numbers; it takes 2"],
+         change=[(BODY_TYPE, value("Type", "string", "deformable body")), (GEOMETRY, SPINDLE),
                  (DENSITY, DENSITY + '<ParameterList name="Material">' + value("Young's Modulus", "double", "1e4") + "</ParameterList>")]),
     Case("a body without mass", ["\"Ball\"", "no mass"], change=(DENSITY, "")),
     Case("a body with two masses", "leave out one", change=(DENSITY, DENSITY + value("Mass", "double", "1"))),

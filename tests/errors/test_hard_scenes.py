@@ -100,6 +100,16 @@ class HardScenes(unittest.TestCase):
                     rows, _ = self.run_scene(scene(solids={"Mover": solid}, coupling=coupling), "--steps", 30)
                     self.assertEqual(len(rows), 30)
 
+    def test_explain_of_an_empty_tank(self):
+        """A source is to fill it; until then no cell has a pressure."""
+        jet = {"Shape": "ball", "Center": (.5, .8), "Radius": .1, "Liquid": True, "Velocity": (0., -1.)}
+        empty = {"Free Surface": {"Interface": {"Type": "particle level set"}}, "Gravity": (0., -9.8), "Sources": {"Jet": jet}}
+        with tempfile.TemporaryDirectory() as folder:
+            result = simulate(folder, "--explain", scene=scene(fluid=empty, time={"End": 2.}, Output={"Frames": True}))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"frames +about 100: every 0.02 s")
+        self.assertRegex(result.stdout, r"memory so far +\d+ MB over all ranks\n")
+
     def test_a_solid_fills_the_whole_domain(self):
         """There is no pressure to solve for, with whatever strategy."""
         inverses = [{"Type": kind, **({"Prec Type": "RILUK"} if kind == "Ifpack2" else {})}
