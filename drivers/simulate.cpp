@@ -5,8 +5,8 @@
 //   simulate scene.xml --restart run/checkpoint-000120.h5 --output run
 //   simulate scene.xml --validate | --explain        simulate --parameters | --list-plugins
 //
-// Exit codes: 0 done, 2 bad input, 3 a solve failed, 4 input or output failed, 130/143 stopped by a
-// signal after a step and its checkpoint.
+// Exit codes: 0 done, 2 bad input, 3 a solve failed, 4 input or output failed, 128 + its number
+// stopped by a signal after a step and its checkpoint.
 #include <CLI/CLI.hpp>
 #include <Tpetra_Core.hpp>
 #include <iostream>

@@ -159,9 +159,12 @@ void JointRates<dim>::move(const Vector& velocity, double time, double dt) {
 }
 
 template <int dim>
-double JointRates<dim>::largest_stable_step() const {
+StepBound JointRates<dim>::largest_stable_step() const {
   const double fastest = articulation_->fastest_turn();
-  return fastest > 0 ? articulation_->options().largest_turn / fastest : 1e300;
+  if (fastest == 0)
+    return {};
+  return {articulation_->options().largest_turn / fastest, "Largest Turn of joints",
+          "A larger \"Time/Largest Turn\" allows more, at the price of energy."};
 }
 
 template <int dim>

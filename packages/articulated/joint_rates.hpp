@@ -43,7 +43,7 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public Wor
   void set_velocity(const Vector& velocity) override;
   void move(const Vector& velocity, double time, double dt) override;
   std::vector<SolidState<dim>> states() const override { return {}; }
-  double largest_stable_step() const override;
+  StepBound largest_stable_step() const override;
 
   void save(CheckpointWriter& writer) const override;
   void load(const CheckpointReader& reader) override;

@@ -89,6 +89,11 @@ TimeIntegration read_integration(const ParameterList& list) {
   return name == "second-order" ? TimeIntegration::second_order : TimeIntegration::fully_implicit;
 }
 
+bool is_implicit(TimeIntegration integration) {
+  return integration == TimeIntegration::fully_implicit ||
+         integration == TimeIntegration::second_order;
+}
+
 /// Anchors are locked nodes of their own, without mass and off the surface.
 template <int dim>
 void add_tethers(const std::vector<Tether<dim>>& tethers, DeformableBody<dim>& body) {
@@ -129,7 +134,7 @@ void declare_body_start(ParameterList& list) {
                    "Rayleigh's factor of the stiffness at rest [s]: a mode of angular frequency w "
                    "has w/2 times this of critical damping.");
   declare_choice(
-      list, "Time Integration", "semi-implicit",
+      list, "Time Integration", "fully-implicit",
       {"explicit", "semi-implicit", "fully-implicit", "second-order"},
       "explicit: all forces at the present state. semi-implicit: elastic forces at the "
       "present positions, implicit damping. fully-implicit: both linearised and solved "
@@ -140,11 +145,10 @@ void declare_body_start(ParameterList& list) {
       "the stiffest element.");
   declare_at_least(
       list, "Most Sub-Steps", 1, 1,
-      "Explicit and semi-implicit: elastic forces are averaged over up to so many sub-steps of the "
-      "body "
-      "alone where a step is longer than its stable one. Modes slower than the step keep their "
-      "stiffness, faster ones are softened until the step carries them. 1: the stable step bounds "
-      "the step of all.");
+      "Explicit and semi-implicit only: elastic forces are averaged over up to so many sub-steps "
+      "of the body alone where a step is longer than its stable one. Modes slower than the step "
+      "keep their stiffness, faster ones are softened until the step carries them. 1: the stable "
+      "step bounds the step of all.");
   declare_start<dim>(list);
   declare_pinned<dim>(list);
   declare_attachments<dim>(list);
@@ -161,6 +165,11 @@ void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& r
   body.friction = list.get<double>("Friction");
   body.integration = read_integration(list);
   body.most_sub_steps = list.get<int>("Most Sub-Steps");
+  check_input(body.most_sub_steps == 1 || !is_implicit(body.integration),
+              "The solid \"{}\" has \"Most Sub-Steps\" {}, which only explicit elastic forces "
+              "take: set its \"Time Integration\" to semi-implicit or explicit, or leave the "
+              "sub-steps out.",
+              body.name, body.most_sub_steps);
   body.consistent_mass = list.get<std::string>("Mass") == "consistent";
   std::vector<double> node_measure(rest.size(), 0);
   const int n = body.mass_elements.n_corners;

@@ -175,7 +175,7 @@ DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& lis
   check_input(
       body.density > 0 || body.integration == TimeIntegration::fully_implicit,
       "The cloth \"{}\" has no mass (\"Surface Density\" is 0), so that no explicit force may "
-      "act on it. Set its \"Time Integration\" to fully-implicit.",
+      "act on it. Set its \"Time Integration\" to fully-implicit, the default.",
       name);
   check_input(body.density > 0 || body.limited_edges.empty(),
               "The cloth \"{}\" has no mass (\"Surface Density\" is 0) that the impulses of a "

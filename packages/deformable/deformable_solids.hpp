@@ -66,7 +66,7 @@ class DeformableSolids : public SolidModel<dim>,
   void limit_motion(double dt, Vector& velocity) override;
   void move(const Vector& velocity, double time, double dt) override;
   std::vector<SolidState<dim>> states() const override { return states_; }
-  double largest_stable_step() const override { return explicit_.largest_stable_step(); }
+  StepBound largest_stable_step() const override { return explicit_.largest_stable_step(); }
 
   Momentum<dim> external_impulse(double, double dt) const override {
     return {dt * load_.linear, dt * load_.angular};

@@ -62,11 +62,14 @@ void DeformableSolids<dim>::load(const CheckpointReader& reader) {
   std::vector<GlobalIndex> ids;
   for (int i = 0; i < nodes_.space.n_local(); ++i)
     ids.push_back(nodes_.space.original(i));
-  nodes_.x = points_of<dim>(reader.read_distributed<double>(type_ + "/positions", ids));
+  nodes_.x = points_of<dim>(reader.read_distributed<double>(type_ + "/positions", ids, dim));
   ids.resize(nodes_.n_owned());
   nodes_.velocity = nodes_.space.vector(
-      points_of<dim>(reader.read_distributed<double>(type_ + "/velocities", ids)));
-  surface_.place(points_of<dim>(file.read_all<double>(type_ + "/surface velocities")));
+      points_of<dim>(reader.read_distributed<double>(type_ + "/velocities", ids, dim)));
+  const std::vector<double> velocity = file.read_all<double>(type_ + "/surface velocities");
+  reader.check(velocity.size() == dim * surface_.velocity().size(),
+               "the surface velocities of its soft solids are incomplete");
+  surface_.place(points_of<dim>(velocity));
   implicit_.end_step();
   update();
 }

@@ -42,13 +42,17 @@ void ExplicitElasticity<dim>::update_largest_stable_step() {
   }
   MPI_Allreduce(MPI_IN_PLACE, rates.data(), 2 * n_bodies, MPI_DOUBLE, MPI_MAX,
                 raw_communicator(nodes_.comm));
-  largest_stable_step_ = 1e300;
+  largest_stable_step_ = {};
   for (int b = 0; b < n_bodies; ++b) {
     elastic_step_[b] = rates[2 * b] > 0 ? safety / rates[2 * b] : 1e300;
     const double viscous_step = rates[2 * b + 1] > 0 ? safety / rates[2 * b + 1] : 1e300;
-    largest_stable_step_ =
-        std::min({largest_stable_step_, viscous_step,
-                  longest_sub_stepped(elastic_step_[b], nodes_.bodies[b].most_sub_steps)});
+    const SoftBody& body = nodes_.bodies[b];
+    const double longest =
+        std::min(viscous_step, longest_sub_stepped(elastic_step_[b], body.most_sub_steps));
+    if (longest < largest_stable_step_.dt)
+      largest_stable_step_ = {
+          longest, "stiffest element of " + body.name,
+          "No element bounds it with \"Time Integration\" = fully-implicit of that solid."};
   }
 }
 

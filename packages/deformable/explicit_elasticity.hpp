@@ -4,6 +4,7 @@
 
 #include "deformable/element_forces.hpp"
 #include "deformable/sub_steps.hpp"
+#include "interfaces/step_bound.hpp"
 
 namespace lockstep {
 
@@ -21,7 +22,7 @@ class ExplicitElasticity {
   void begin_step(double dt, bool holds_others);
   /// Bounds the step at the present positions. Collective.
   void update_largest_stable_step();
-  double largest_stable_step() const { return largest_stable_step_; }  ///< [s]
+  const StepBound& largest_stable_step() const { return largest_stable_step_; }
   /// Elastic forces for the present step on the owned nodes [N]; computed once for the same forces.
   /// Collective.
   const Nodes& averaged_forces() const;
@@ -39,7 +40,7 @@ class ExplicitElasticity {
   const BodyNodes<dim>& nodes_;
   const ElementForces<dim>& forces_;
   std::vector<double> elastic_step_;  ///< stable for each body without sub-steps [s]
-  double largest_stable_step_ = 1e300;
+  StepBound largest_stable_step_;
   double step_ = 0;                        ///< the present one [s]
   mutable std::optional<Nodes> averaged_;  ///< none: not asked for yet
   mutable unsigned averaged_number_ = 0;   ///< number of the forces it was made of

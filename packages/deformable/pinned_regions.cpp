@@ -85,8 +85,12 @@ void read_pinned(const ParameterList& list, const std::vector<Point<dim>>& rest,
     hold.nodes = nodes_in_region<dim>(region, rest, where);
     hold.script = read_script<dim>(region.sublist("Motion"), where + "/Motion");
     hold.origin = origin;
-    for (const auto& direction : region.get<ParameterArray<std::string>>("Locked"))
-      hold.axes[direction[0] - 'x'] = true;
+    for (const auto& direction : region.get<ParameterArray<std::string>>("Locked")) {
+      bool& is_held = hold.axes[direction[0] - 'x'];
+      check_input(!is_held, "The region \"{}\" has \"{}\" twice in \"Locked\"; once is enough.",
+                  where, direction);
+      is_held = true;
+    }
     const bool released = region.isParameter("End");
     if (released)
       hold.release_time = region.get<double>("End");

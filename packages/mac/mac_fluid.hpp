@@ -52,8 +52,8 @@ class MacFluid : public FluidDiscretization<dim> {
 
   double smallest_length() const override { return flow_.domain.spacing(); }
   double largest_speed() const override { return flow_.largest_speed(); }
-  double largest_stable_step() const override {
-    return liquid_ ? liquid_->largest_stable_step() : 1e300;
+  StepBound largest_stable_step() const override {
+    return liquid_ ? liquid_->largest_stable_step() : StepBound{};
   }
   bool geometry_changes() const override { return liquid_ != nullptr; }
   Point<dim> gravity() const override { return flow_.parameters.forces.gravity; }

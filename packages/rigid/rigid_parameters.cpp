@@ -105,6 +105,8 @@ void set_locks(RigidBodyConstants<dim>& body, const ParameterList& list,
         "The solid \"{}\" has \"{}\" locked, but starts with a velocity of {} there; set it "
         "to zero.",
         body.name, name, velocity[k]);
+    check_input(!body.locked[k], "The solid \"{}\" has \"{}\" twice in \"Locked\"; once is enough.",
+                body.name, name);
     body.locked[k] = true;
   }
 }

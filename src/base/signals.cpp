@@ -8,8 +8,13 @@ namespace {
 volatile std::sig_atomic_t noted = 0;
 volatile std::sig_atomic_t n_received = 0;
 
+/// Sent by people and batch systems that want a run to end.
+constexpr int ending_signals[] = {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
+
 void handle_signal(int signal_number) {
   note_signal(signal_number);
+  if (signal_number == SIGXCPU)  // comes again each second
+    return;
   n_received = n_received + 1;
   if (n_received >= 3) {
     signal(signal_number, SIG_DFL);
@@ -23,10 +28,16 @@ void install_signal_handlers() {
   action.sa_handler = handle_signal;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  for (const int number : ending_signals) {
+    struct sigaction before {};
+    sigaction(number, nullptr, &before);
+    if (number != SIGHUP || before.sa_handler != SIG_IGN)  // nohup has it ignored
+      sigaction(number, &action, nullptr);
+  }
   // Beyond a limit of the size of files, writing fails with a message instead.
   signal(SIGXFSZ, SIG_IGN);
+  // The log may go into a pipe that is closed; the files of the run are what counts.
+  signal(SIGPIPE, SIG_IGN);
 }
 
 void note_signal(int signal_number) {
@@ -44,8 +55,8 @@ int signal_received(const Communicator& comm) {
 HeldSignals::HeldSignals() {
   sigset_t held;
   sigemptyset(&held);
-  sigaddset(&held, SIGTERM);
-  sigaddset(&held, SIGINT);
+  for (const int number : ending_signals)
+    sigaddset(&held, number);
   pthread_sigmask(SIG_BLOCK, &held, &before_);
 }
 

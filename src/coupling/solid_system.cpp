@@ -322,11 +322,11 @@ Momentum<dim> SolidSystem<dim>::momentum(const Vector& generalized_momentum) con
 }
 
 template <int dim>
-double SolidSystem<dim>::largest_stable_step() const {
-  double dt = 1e300;
+StepBound SolidSystem<dim>::largest_stable_step() const {
+  StepBound bound;
   for (const auto& solid_model : models_)
-    dt = std::min(dt, solid_model->largest_stable_step());
-  return dt;
+    bound = shorter(bound, solid_model->largest_stable_step());
+  return bound;
 }
 
 template <int dim>

@@ -124,7 +124,7 @@ class SolidSystem {
   /// Collective.
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const;
   Momentum<dim> momentum(const Vector& generalized_momentum) const;
-  double largest_stable_step() const;
+  StepBound largest_stable_step() const;
   GlobalIndex n_clamped_elements() const;  ///< sum over all models, see SolidOutput
   double stretch_beyond_limit() const;     ///< in the worst place of all models, see SolidOutput
   /// True if all models are AuditedSolids.

@@ -1,7 +1,9 @@
 #pragma once
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -16,7 +18,10 @@ namespace lockstep {
 /// The lines of a text file as words, with the line number for messages. Internal to the readers.
 class TextLines {
  public:
-  explicit TextLines(const std::string& file) : file_(file), stream_(file) {}
+  explicit TextLines(const std::string& file) : file_(file), stream_(file) {
+    std::error_code error;  // a file that is not there has its own message
+    size_ = std::filesystem::file_size(file, error);
+  }
 
   /// Next line that holds words; what follows '#' is skipped. False at the end of the file.
   bool next(std::vector<std::string>& words) {
@@ -37,6 +42,14 @@ class TextLines {
   std::string where() const { return fmt::format("{}, line {}", file_, number_); }
 
   int line() const { return number_; }
+
+  /// Throws InputError if the file announces more entries than it has bytes.
+  void check_count(long n) const {
+    check_input(n >= 0, "{}: a count is negative: {}.", where(), n);
+    check_input(static_cast<std::uintmax_t>(n) <= size_,
+                "{}: {} entries are announced, but the file has {} bytes; it is damaged.", where(),
+                n, size_);
+  }
 
   /// A finite number in decimal notation.
   double number(const std::string& word) const {
@@ -66,6 +79,7 @@ class TextLines {
  private:
   std::string file_;
   std::ifstream stream_;
+  std::uintmax_t size_;  ///< [bytes]
   int number_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
 #include "interfaces/prescribed_flux.hpp"
+#include "interfaces/step_bound.hpp"
 #include "linear/harmonic_extension.hpp"
 #include "linear/types.hpp"
 
@@ -211,8 +212,8 @@ class FluidDiscretization : public PlugIn {
   /// crosses more than n_cells cells, with the velocity that gravity adds within the step. Infinite
   /// at rest. Default: all cells are as small as the smallest.
   virtual double suggested_step(double n_cells, double solid_speed) const;
-  /// The longest step that is stable [s]; waves on a free surface bound it. Default: any is. Local.
-  virtual double largest_stable_step() const { return 1e300; }
+  /// The longest step that is stable; waves on a free surface bound it. Default: any is. Local.
+  virtual StepBound largest_stable_step() const { return {}; }
   /// True if its own geometry changes from step to step, as that of a free surface does: then it is
   /// frozen anew after `advect`, solids or not. The same on all ranks. Local.
   virtual bool geometry_changes() const { return false; }

@@ -4,6 +4,7 @@
 #include "geometry/surface_snapshot.hpp"
 #include "interfaces/momentum.hpp"
 #include "interfaces/plug_in.hpp"
+#include "interfaces/step_bound.hpp"
 #include "linear/near_null_space.hpp"
 #include "linear/types.hpp"
 
@@ -133,8 +134,8 @@ class SolidModel : public PlugIn {
   /// rigid solids: x. Local.
   virtual Point<dim> carried(int solid, const Point<dim>& x) const;
   virtual std::vector<SolidState<dim>> states() const = 0;  ///< one per solid, on every rank
-  /// Largest stable step of explicitly integrated forces [s]. Default: none.
-  virtual double largest_stable_step() const;
+  /// Longest stable step of explicitly integrated forces. Default: any is.
+  virtual StepBound largest_stable_step() const { return {}; }
   /// Pushes a solid from the next step on, instead of the loads of the scene: a force at the centre
   /// of mass [N] and a torque about it [N m]. A program around a run calls it alike on all ranks,
   /// and again after a restart: checkpoints do not keep it. Returns false if these solids cannot be
@@ -162,10 +163,6 @@ RCP<const LinearOperator> SolidModel<dim>::implicit_force(double) const {
 template <int dim>
 Point<dim> SolidModel<dim>::carried(int, const Point<dim>& x) const {
   return x;
-}
-template <int dim>
-double SolidModel<dim>::largest_stable_step() const {
-  return 1e300;
 }
 
 }  // namespace lockstep

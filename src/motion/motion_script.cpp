@@ -39,9 +39,13 @@ ParameterList table_schema() {
 }
 
 template <int dim>
-MotionScript<dim> sinusoid(const ParameterList& list) {
+MotionScript<dim> sinusoid(const ParameterList& list, const std::string& where) {
   const Point<dim> amplitude = vector_value<dim>(list, "Amplitude");
   const AngularVector<dim> turn = rotation_value<dim>(list, "Angular Amplitude");
+  check_input(!amplitude.isZero() || !turn.isZero(),
+              "In \"{}\", the sinusoid moves nothing: give it an \"Amplitude\" or an \"Angular "
+              "Amplitude\", or make the motion \"static\".",
+              where);
   const double rate = 2 * pi * list.get<double>("Frequency");
   const double phase = list.get<double>("Phase");
   return [=](double time) {
@@ -127,6 +131,10 @@ MotionScript<dim> table(const ParameterList& list, const std::string& where) {
                 where, times[i], times[i - 1]);
   const auto displacements = read_columns(list, "Displacements", times, dim, where);
   const auto angles = read_columns(list, "Angles", times, 1, where);
+  check_input(!displacements.empty() || !angles.empty(),
+              "In \"{}\", the table moves nothing: give it \"Displacements\" or \"Angles\", or "
+              "make the motion \"static\".",
+              where);
   const AngularVector<dim> axis = table_axis<dim>(list, where);
   return [=](double time) {
     ScriptedMotion<dim> motion;
@@ -157,7 +165,8 @@ std::vector<TypedSchema> timed_motion_schemas() {
 
 template <int dim>
 MotionScript<dim> read_timed_motion(const ParameterList& list, const std::string& where) {
-  return list.get<std::string>("Type") == "table" ? table<dim>(list, where) : sinusoid<dim>(list);
+  return list.get<std::string>("Type") == "table" ? table<dim>(list, where)
+                                                  : sinusoid<dim>(list, where);
 }
 
 template <int dim>

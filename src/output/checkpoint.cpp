@@ -218,20 +218,35 @@ void CheckpointWriter::finish(int keep) {
 CheckpointReader::CheckpointReader(const Communicator& comm, const std::string& path)
     : comm_(comm), file_(open_checkpoint(comm, path)) {
   header_.step = file_.read_attribute<long long>("/", "step");
+  check(header_.step >= 0, fmt::format("its step is {}", header_.step));
   header_.time = file_.read_attribute<double>("/", "time");
   header_.parameters = file_.read_text("parameters");
   header_.files = file_.read_text("files");
 }
 
+void CheckpointReader::check(bool makes_sense, const std::string& what) const {
+  throw_on_all(comm_, makes_sense ? "" : damaged(file_.path(), what),
+               static_cast<int>(ExitCode::output_failed));
+}
+
 template <typename T>
-std::vector<T> CheckpointReader::read_distributed(
-    const std::string& name, const std::vector<GlobalIndex>& wanted_global_ids) const {
+std::vector<T> CheckpointReader::read_distributed(const std::string& name,
+                                                  const std::vector<GlobalIndex>& wanted_global_ids,
+                                                  int n_components) const {
   check_input(file_.exists(name + "/ids") && file_.exists(name + "/values"),
               "Checkpoint '{}' has no array '{}': it belongs to a scene with other models.",
               file_.path(), name);
   const int n_ranks = comm_->getSize();
-  const auto n_components = file_.read_attribute<long long>(name, "n_components");
-  const GlobalIndex n = file_.shape(name + "/ids").front();
+  const std::vector<GlobalIndex> shape_of_ids = file_.shape(name + "/ids"),
+                                 shape = file_.shape(name + "/values");
+  GlobalIndex n_values = 1;
+  for (const GlobalIndex extent : shape)
+    n_values *= extent;
+  check(shape_of_ids.size() == 1 && !shape.empty() && shape.front() == shape_of_ids.front() &&
+            n_values == shape_of_ids.front() * n_components,
+        fmt::format("the array '{}' does not hold {} values for each of its numbers", name,
+                    n_components));
+  const GlobalIndex n = shape_of_ids.front();
   const GlobalIndex first = first_of_rank(n, comm_->getRank(), n_ranks);
   const GlobalIndex n_mine = first_of_rank(n, comm_->getRank() + 1, n_ranks) - first;
   const auto ids = file_.read_rows<long long>(name + "/ids", first, n_mine);
@@ -322,9 +337,11 @@ template void CheckpointWriter::write_distributed(const std::string&,
 template void CheckpointWriter::write_distributed(const std::string&,
                                                   const std::vector<GlobalIndex>&,
                                                   const std::vector<long long>&, int);
-template std::vector<double> CheckpointReader::read_distributed(
-    const std::string&, const std::vector<GlobalIndex>&) const;
-template std::vector<long long> CheckpointReader::read_distributed(
-    const std::string&, const std::vector<GlobalIndex>&) const;
+template std::vector<double> CheckpointReader::read_distributed(const std::string&,
+                                                                const std::vector<GlobalIndex>&,
+                                                                int) const;
+template std::vector<long long> CheckpointReader::read_distributed(const std::string&,
+                                                                   const std::vector<GlobalIndex>&,
+                                                                   int) const;
 
 }  // namespace lockstep

@@ -57,10 +57,15 @@ class CheckpointReader {
   Hdf5File& file() { return file_; }
 
   /// The values of these entities, in the order asked for; an entity may be asked for by several
-  /// ranks. Throws InputError if the checkpoint lacks the array or one of the numbers.
+  /// ranks. Throws InputError if the checkpoint lacks the array or one of the numbers, OutputError
+  /// if the array has not so many components.
   template <typename T>
   std::vector<T> read_distributed(const std::string& name,
-                                  const std::vector<GlobalIndex>& wanted_global_ids) const;
+                                  const std::vector<GlobalIndex>& wanted_global_ids,
+                                  int n_components = 1) const;
+  /// Throws OutputError with `what` is wrong unless the content makes sense on all ranks: the bytes
+  /// may be those that were written and be nonsense all the same.
+  void check(bool makes_sense, const std::string& what) const;
 
  private:
   Communicator comm_;

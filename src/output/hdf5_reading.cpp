@@ -181,7 +181,12 @@ std::vector<T> Hdf5File::read_rows(const std::string& name, GlobalIndex first_ro
            H5Dread(opened.dataset, hdf5::native_type<T>(), memory, opened.space, H5P_DEFAULT,
                    values.data()) >= 0;
   }
-  agree(done ? "" : hdf5::last_error(), fmt::format("read the dataset '{}'", name));
+  std::string refusal = done ? "" : hdf5::last_error();
+  if constexpr (std::is_floating_point_v<T>) {
+    if (done && !std::all_of(values.begin(), values.end(), [](T x) { return std::isfinite(x); }))
+      refusal = "it holds a number that is not finite";
+  }
+  agree(refusal, fmt::format("read the dataset '{}'", name));
   return values;
 }
 

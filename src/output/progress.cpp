@@ -67,9 +67,11 @@ std::string progress_line(const StepProgress& p) {
   if (!solves.empty())
     solves.replace(solves.size() - 2, 2, " it  ");
   const std::string eta = p.remaining_seconds < 0 ? "?" : format_duration(p.remaining_seconds);
-  return fmt::format("step {:5}  t {}  dt {}  CFL {:.2f}  {}|div| {}  dP {}  {:.2f} s  eta {}",
-                     p.step, format_seconds(p.time), format_seconds(p.time_step), p.cfl, solves,
-                     one_digit(p.max_divergence), one_digit(p.momentum_error), p.wall_seconds, eta);
+  const std::string bound = p.bound.empty() ? "" : " (" + p.bound + ")";
+  return fmt::format("step {:5}  t {}  dt {}{}  CFL {:.2f}  {}|div| {}  dP {}  {:.2f} s  eta {}",
+                     p.step, format_seconds(p.time), format_seconds(p.time_step), bound, p.cfl,
+                     solves, one_digit(p.max_divergence), one_digit(p.momentum_error),
+                     p.wall_seconds, eta);
 }
 
 }  // namespace lockstep

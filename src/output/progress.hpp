@@ -51,6 +51,7 @@ struct StepProgress {
   long long step = 0;
   double time = 0;       ///< at the end of the step [s]
   double time_step = 0;  ///< [s]
+  std::string bound{};   ///< bound of the step; empty: the CFL number
   double cfl = 0;
   std::vector<std::pair<std::string, int>> iterations;  ///< by solve, in order: S1, F2, S2
   double max_divergence = 0;                            ///< [1/s]
@@ -59,7 +60,7 @@ struct StepProgress {
   double remaining_seconds = -1;  ///< negative: unknown
 };
 
-/// One line without its end, such as
+/// One line without its end, with what bounds the step in brackets behind it, such as
 /// `step   120  t 1.200 s  dt 10.00 ms  CFL 0.84  S1 34  F2 21  S2 33 it  |div| 3e-9  dP 2e-15 0.41
 /// s  eta 3m10s`
 std::string progress_line(const StepProgress& progress);

@@ -15,4 +15,14 @@ bool Schedule::reach(double time, double dt) {
   return is_another || interval_ <= dt;
 }
 
+bool WallClockSchedule::reach(const Communicator& comm) {
+  const Clock::time_point now = Clock::now();
+  const bool is_due =
+      is_root(comm) && std::chrono::duration<double>(now - last_).count() >= interval_;
+  if (max_all(comm, static_cast<GlobalIndex>(is_due)) == 0)
+    return false;
+  last_ = now;
+  return true;
+}
+
 }  // namespace lockstep

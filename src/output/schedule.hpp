@@ -1,4 +1,7 @@
 #pragma once
+#include <chrono>
+
+#include "base/communicator.hpp"
 
 namespace lockstep {
 
@@ -16,6 +19,20 @@ class Schedule {
  private:
   double start_, interval_;
   double n_reached_ = 0;  ///< intervals until now, whole
+};
+
+/// When something comes that is written once in an interval of wall time, from the start on.
+class WallClockSchedule {
+ public:
+  explicit WallClockSchedule(double interval) : interval_(interval) {}  ///< [s]
+  /// Whether it comes now; then the next one comes an interval later. By the clock of rank 0.
+  /// Collective.
+  bool reach(const Communicator& comm);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double interval_;
+  Clock::time_point last_ = Clock::now();
 };
 
 }  // namespace lockstep

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/types.hpp"
 #include "parameters/suggestion.hpp"
 
 namespace lockstep {
@@ -38,23 +39,73 @@ void check_shape_sizes(const ParameterList& geometry, const std::vector<ShapeSiz
   }
 }
 
+namespace {
+
+constexpr double most_elements = 1e7;
+
+/// Edges of a box about the body, of a wall the third one its thickness [m]; none of a mesh file.
+std::vector<double> edges_of(const ParameterList& geometry) {
+  if (geometry.isParameter("Size")) {
+    const auto& size = geometry.get<ParameterArray<double>>("Size");
+    return {size.begin(), size.end()};
+  }
+  if (!geometry.isParameter("Radius"))
+    return {};
+  const double across = 2 * geometry.get<double>("Radius");
+  const auto third = [&](const char* name, double otherwise) {
+    return geometry.isParameter(name) ? geometry.get<double>(name) : otherwise;
+  };
+  const double length = third("Length", across);
+  if (geometry.isParameter("Tube Radius"))
+    return {pi * across, 2 * geometry.get<double>("Tube Radius"),
+            2 * geometry.get<double>("Tube Radius")};
+  return {across, length, third("Thickness", across)};
+}
+
+/// About the number of elements of a mesh of that dimension over a box.
+double n_elements_of(std::vector<double> edges, double spacing, int dimension) {
+  constexpr double in_a_cube = 6;
+  std::sort(edges.rbegin(), edges.rend());
+  double n = in_a_cube;
+  for (int k = 0; k < std::min<int>(dimension, edges.size()); ++k)
+    n *= std::max(1.0, edges[k] / spacing);
+  return n;
+}
+
+}  // namespace
+
 void check_mesh_size(const ParameterList& geometry, double spacing, int dimension,
                      const std::string& name) {
-  constexpr double most_elements = 1e8;
-  double extent = 0;
-  for (const char* size : {"Radius", "Length"}) {
-    if (geometry.isParameter(size))
-      extent = std::max(extent, geometry.get<double>(size));
-  }
-  if (geometry.isParameter("Size")) {
-    for (const double edge : geometry.get<ParameterArray<double>>("Size"))
-      extent = std::max(extent, edge);
-  }
-  const double n_elements = std::pow(extent / spacing, dimension);
+  const std::vector<double> edges = edges_of(geometry);
+  if (edges.empty())
+    return;
+  const double n_elements = n_elements_of(edges, spacing, dimension);
   check_input(n_elements <= most_elements,
               "In \"{}/Geometry\", a body {:g} m long with a mesh of {:g} m would have some {:.0e} "
               "elements; make it smaller, or the mesh coarser.",
-              name, extent, spacing, n_elements);
+              name, *std::max_element(edges.begin(), edges.end()), spacing, n_elements);
+}
+
+void check_body_size(const ParameterList& geometry, double grid_spacing, double domain_length,
+                     int dimension, const std::string& name) {
+  constexpr double most_domains = 1000;
+  const std::vector<double> edges = edges_of(geometry);
+  if (edges.empty())
+    return;
+  const double length = *std::max_element(edges.begin(), edges.end());
+  const double n_elements = geometry.isParameter("Mesh Spacing")
+                                ? 0
+                                : n_elements_of(edges, 0.7 * grid_spacing, dimension - 1);
+  check_input(
+      length <= most_domains * domain_length && n_elements <= most_elements,
+      "In \"{}/Geometry\", the body is {:g} m long, in a domain of {:g} m{}; lengths are in "
+      "metres: make it smaller.",
+      name, length, domain_length,
+      n_elements <= most_elements
+          ? ""
+          : fmt::format(", and its surface as fine as the grid would have some {:.0e} "
+                        "elements",
+                        n_elements));
 }
 
 }  // namespace lockstep

@@ -22,9 +22,14 @@ std::vector<std::string> shape_names(const std::vector<ShapeSizes>& shapes, int 
 void check_shape_sizes(const ParameterList& geometry, const std::vector<ShapeSizes>& shapes,
                        const std::string& name);
 
-/// Throws InputError if a mesh of that spacing [m] would have so many elements that a typing error
-/// is likelier. `dimension`: of the elements.
+/// Throws InputError if a mesh of that spacing [m] would have so many elements, above 1e7, that a
+/// typing error is likelier. `dimension`: of the elements. Of mesh files it knows nothing.
 void check_mesh_size(const ParameterList& geometry, double spacing, int dimension,
                      const std::string& name);
+
+/// Throws InputError if a body is a thousand times as long as its domain, whose longest edge is
+/// given [m], or if its surface at the grid's spacing [m] is too large. `dimension`: of space.
+void check_body_size(const ParameterList& geometry, double grid_spacing, double domain_length,
+                     int dimension, const std::string& name);
 
 }  // namespace lockstep

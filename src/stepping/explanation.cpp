@@ -8,8 +8,26 @@
 
 namespace lockstep {
 
+namespace {
+std::string frames_note(const SceneOptions& options) {
+  if (!options.output.frames)
+    return "none";
+  if (!options.output.frame_interval)
+    return options.time.most_steps > 0
+               ? fmt::format("about 100: each hundredth of the run, of {:g} s or {} steps",
+                             options.time.end - options.time.start, options.time.most_steps)
+               : fmt::format("about 100: every {:g} s, a hundredth of the run",
+                             (options.time.end - options.time.start) / 100);
+  return *options.output.frame_interval == 0
+             ? "every step"
+             : fmt::format("every {:g} s", *options.output.frame_interval);
+}
+}  // namespace
+
 template <int dim>
-std::string explanation(Components<dim>& components, PaperStep<dim>& scheme, bool reads_pressure) {
+std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
+                        const SceneOptions& options) {
+  const bool reads_pressure = options.step.prediction.incremental_pressure;
   const auto& fluid = *components.fluid;
   const auto& solids = *components.solids;
   const Communicator& comm = solids.comm();
@@ -53,14 +71,17 @@ std::string explanation(Components<dim>& components, PaperStep<dim>& scheme, boo
   line("contact", components.contact ? components.contact->name() : "none");
   line("pressure regions", fmt::format("{}, null space of dimension {}", fluid.regions().n_regions,
                                        scheme.system().null_space().size()));
-  line("memory so far",
-       fmt::format(
-           "{:.0f} MB over all ranks, {:.0f} bytes a cell", memory.all_ranks_mb,
-           1e6 * memory.all_ranks_mb / double(fluid.pressure_map()->getGlobalNumElements())));
+  line("frames", frames_note(options));
+  const auto n_pressures = double(fluid.pressure_map()->getGlobalNumElements());
+  line("memory so far", fmt::format("{:.0f} MB over all ranks{}", memory.all_ranks_mb,
+                                    n_pressures == 0  // an empty tank that sources are to fill
+                                        ? ""
+                                        : fmt::format(", {:.0f} bytes a cell",
+                                                      1e6 * memory.all_ranks_mb / n_pressures)));
   return text;
 }
 
-template std::string explanation(Components<2>&, PaperStep<2>&, bool);
-template std::string explanation(Components<3>&, PaperStep<3>&, bool);
+template std::string explanation(Components<2>&, PaperStep<2>&, const SceneOptions&);
+template std::string explanation(Components<3>&, PaperStep<3>&, const SceneOptions&);
 
 }  // namespace lockstep

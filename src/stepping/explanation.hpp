@@ -1,13 +1,13 @@
 #pragma once
 #include <string>
 
-#include "stepping/step/paper_step.hpp"
+#include "stepping/scene.hpp"
 
 namespace lockstep {
 
-/// Tells what is active in a run, why, and what it costs in memory; `reads_pressure`: the viscous
-/// solve does. Collective.
+/// Tells what is active in a run, why, and what it costs in memory. Collective.
 template <int dim>
-std::string explanation(Components<dim>& components, PaperStep<dim>& scheme, bool reads_pressure);
+std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
+                        const SceneOptions& options);
 
 }  // namespace lockstep

@@ -32,11 +32,25 @@ void RunWarnings<dim>::warn_of_volume(long long step, const LiquidReport& liquid
   of_volume_ = true;
   log.warning(
       "Step {}: of the liquid {:.2g} is lost, and its volume is off the target by {:.2g} of it. "
-      "What "
-      "is thinner than a cell, as spray and what bodies press out between them, takes a finer "
-      "grid. "
-      "Later steps like this one are not reported.",
+      "What is thinner than a cell, as spray and what bodies press out between them, takes a finer "
+      "grid. Later steps like this one are not reported.",
       step, liquid.lost / all, off / all);
+}
+
+template <int dim>
+void RunWarnings<dim>::before_step(long long step, const StepBound& bound, const StepBound& wanted,
+                                   const Log& log) {
+  constexpr int many = 20;
+  n_short_ = bound.dt < 0.1 * wanted.dt ? n_short_ + 1 : 0;
+  if (n_short_ != many || of_short_steps_)
+    return;
+  of_short_steps_ = true;
+  log.warning(
+      "Step {}: for {} steps the bound by the {} ({}) has been less than a tenth of the step by "
+      "the {} ({}). {}{}Later steps like this one are not reported.",
+      step, many, bound.reason, format_seconds(bound.dt),
+      wanted.reason.empty() ? "CFL number" : wanted.reason, format_seconds(wanted.dt), bound.remedy,
+      bound.remedy.empty() ? "" : " ");
 }
 
 template <int dim>

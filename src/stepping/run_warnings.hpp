@@ -11,6 +11,9 @@ namespace lockstep {
 template <int dim>
 class RunWarnings {
  public:
+  /// The step that comes, before the end of the run shortens it, and the one that is wanted where
+  /// everything is stable.
+  void before_step(long long step, const StepBound& bound, const StepBound& wanted, const Log& log);
   void after_step(long long step, const StepReport<dim>& report, const Components<dim>& components,
                   const Log& log);
 
@@ -19,8 +22,9 @@ class RunWarnings {
                        const LiquidFluid<dim>& liquid, const Log& log);
   void warn_of_volume(long long step, const LiquidReport& liquid, const Log& log);
 
+  int n_short_ = 0;  ///< steps one after the other that are far shorter than wanted
   bool of_viscous_step_ = false, of_stretch_ = false, of_unsettled_ = false, of_contact_ = false,
-       of_volume_ = false;
+       of_volume_ = false, of_short_steps_ = false;
   std::vector<char> of_watch_;
 };
 

@@ -10,6 +10,7 @@
 #include "base/xml_text.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/parameter_rule.hpp"
+#include "parameters/shape_sizes.hpp"
 #include "stepping/view.hpp"
 
 namespace lockstep {
@@ -47,14 +48,18 @@ void declare_time(ParameterList& scene, bool has_joints) {
 void declare_output(ParameterList& scene) {
   ParameterList& output = declare_list(scene, "Output", "Files that the run writes.");
   declare(output, "Frames", true, "Write frames.h5 and frames.xmf.");
-  declare_at_least(output, "Frame Interval", 0., 0.,
-                   "Simulated time between frames [s]: each comes with the first step at or past a "
-                   "multiple of it after the start, the last at the end. 0: every step.");
+  declare_optional<double>(
+      output, "Frame Interval",
+      "Simulated time between frames [s]: each comes with the first step at or past a multiple of "
+      "it after the start, the last at the end. 0: every step; left out: every hundredth of the "
+      "run, of its time or of its \"Steps\", whichever ends it.");
+  set_at_least(output, "Frame Interval", 0.);
   ParameterList& checkpoints = declare_list(output, "Checkpoints", "From which a run goes on.");
-  declare_at_least(
-      checkpoints, "Interval", 0., 0.,
+  declare_optional<double>(
+      checkpoints, "Interval",
       "Simulated time between two [s], counted as that of frames; 0: only at the end and when "
-      "stopped.");
+      "stopped; left out: every ten minutes on the clock, too.");
+  set_at_least(checkpoints, "Interval", 0.);
   declare_at_least(checkpoints, "Count", 2, 1, "How many are kept.");
   declare_choice(output, "Precision", "single", {"single", "double"}, "Of the fields in frames.");
 }
@@ -179,9 +184,15 @@ template <int dim>
 std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries,
                                                const ParameterList& scene,
                                                const std::string& scene_file,
-                                               const SolidSetting<dim>& setting) {
+                                               const SolidSetting<dim>& setting,
+                                               double domain_length) {
   const ParameterList& solids = scene.sublist("Solids");
   check_solid_names(solids);
+  for (const auto& [name, entry] : entries(solids)) {
+    const ParameterList& solid = solids.sublist(name);
+    if (solid.isSublist("Geometry"))
+      check_body_size(solid.sublist("Geometry"), setting.smallest_length, domain_length, dim, name);
+  }
   std::vector<std::unique_ptr<SolidModel<dim>>> models;
   for (const auto& plugin : registries.solids) {
     NamedLists lists;
@@ -273,8 +284,10 @@ SceneOptions scene_options(const ParameterList& scene) {
               options.time.start);
   const ParameterList& output = scene.sublist("Output");
   options.output.frames = output.get<bool>("Frames");
-  options.output.frame_interval = output.get<double>("Frame Interval");
-  options.output.checkpoint_interval = output.sublist("Checkpoints").get<double>("Interval");
+  if (output.isParameter("Frame Interval"))
+    options.output.frame_interval = output.get<double>("Frame Interval");
+  if (output.sublist("Checkpoints").isParameter("Interval"))
+    options.output.checkpoint_interval = output.sublist("Checkpoints").get<double>("Interval");
   options.output.keep_checkpoints = output.sublist("Checkpoints").get<int>("Count");
   options.output.precision = output.get<std::string>("Precision");
   const ParameterList& solver = scene.sublist("Solver");
@@ -300,7 +313,8 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
   const SolidSetting<dim> solid_setting{fluid.smallest_length(), fluid.gravity(),
                                         scene.sublist("Time").get<double>("Start"), comm,
                                         fluid.density(bounds.center())};
-  components.solids = build_solids<dim>(registries, scene, scene_file, solid_setting);
+  components.solids =
+      build_solids<dim>(registries, scene, scene_file, solid_setting, bounds.sizes().maxCoeff());
   components.coupling = registries.couplings.create(type_of("Coupling"), scene.sublist("Coupling"));
   const ParameterList& strategy = scene.sublist("Solver").sublist("Strategy");
   components.strategy = registries.strategies.create(strategy.get<std::string>("Type"), strategy);

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "interfaces/registries.hpp"
@@ -15,8 +16,9 @@ ParameterList scene_parameters(const Registries<dim>& registries, const std::str
 
 struct OutputOptions {
   bool frames = true;
-  double frame_interval = 0;       ///< [s]; 0: every step
-  double checkpoint_interval = 0;  ///< [s of simulated time]; 0: only when stopped and at the end
+  std::optional<double> frame_interval;  ///< [s]; 0: every step; none: a hundredth of the run
+  /// [s of simulated time]; 0: only when stopped and at the end; none: by the clock.
+  std::optional<double> checkpoint_interval;
   int keep_checkpoints = 2;
   std::string precision = "single";
 };

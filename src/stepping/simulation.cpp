@@ -36,9 +36,20 @@ double n_cells(const FluidDiscretization<dim>& fluid) {
   return boxes.empty() ? double(fluid.pressure_map()->getGlobalNumElements()) : n;
 }
 
+/// In simulated time, or without an interval in parts of the run.
+Schedule frame_schedule(const SceneOptions& options) {
+  if (options.output.frame_interval)
+    return {options.time.start, *options.output.frame_interval};
+  return {0, 0.01};
+}
+
 /// Seconds of wall time after which a signal ends a step between its stages, without a checkpoint.
 /// Batch systems kill 30 s after they have asked.
 constexpr double long_step = 20;
+
+/// Seconds of wall time between checkpoints that no interval is given for: as much as one loses to
+/// a power cut without regret, and enough that writing them does not count.
+constexpr double seconds_between_checkpoints = 600;
 
 /// Thrown between the stages of a long step after a signal, on all ranks.
 struct StepStopped {
@@ -64,8 +75,10 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
               {scene_options_.output.precision == "double" ? Precision::double_precision
                                                            : Precision::single_precision,
                0}),
-      frame_times_(scene_options_.time.start, scene_options_.output.frame_interval),
-      checkpoint_times_(scene_options_.time.start, scene_options_.output.checkpoint_interval) {
+      frame_times_(frame_schedule(scene_options_)),
+      checkpoint_times_(scene_options_.time.start,
+                        scene_options_.output.checkpoint_interval.value_or(0)),
+      checkpoint_clock_(seconds_between_checkpoints) {
   if (options.end_time)
     scene_options_.time.end = *options.end_time;
   if (options.steps)
@@ -107,21 +120,22 @@ void Simulation<dim>::check_names() const {
 }
 
 template <int dim>
-double Simulation<dim>::next_step() const {
+StepBound Simulation<dim>::next_step() {
   const TimeOptions& time = scene_options_.time;
   // A resting fluid still has to resolve moving solids.
   const double suggested =
       components_.fluid->suggested_step(time.cfl, components_.solids->largest_surface_speed());
-  double dt = wanted_step(time, suggested);
-  dt = std::min(
-      {dt, components_.fluid->largest_stable_step(), components_.solids->largest_stable_step()});
+  const StepBound wanted = wanted_step(time, suggested);
+  StepBound step = shorter(wanted, components_.fluid->largest_stable_step());
+  step = shorter(step, components_.solids->largest_stable_step());
+  warnings_.before_step(step_ + 1, step, wanted, log_);
   // A bit of difference between ranks would let one of them take a step more.
-  dt = min_all(comm_, dt);
-  check_solve(scheme_->time() + dt > scheme_->time(),
+  step.dt = min_all(comm_, step.dt);
+  check_solve(scheme_->time() + step.dt > scheme_->time(),
               "The step of {} s at {} s is lost in the round-off of the time; something moves too "
               "fast, or a body is too stiff for explicit forces.",
-              dt, scheme_->time());
-  return step_to_end(time, scheme_->time(), dt);
+              step.dt, scheme_->time());
+  return shorter(step, {step_to_end(time, scheme_->time(), step.dt), "end of the run"});
 }
 
 template <int dim>
@@ -134,9 +148,14 @@ bool Simulation<dim>::finished() const {
 template <int dim>
 double Simulation<dim>::fraction_done() const {
   const TimeOptions& time = scene_options_.time;
-  const double by_time = (scheme_->time() - time.start) / (time.end - time.start);
-  const double by_steps = time.most_steps > 0 ? double(step_) / double(time.most_steps) : 0;
-  return std::max(by_time, by_steps);
+  return part_of_run(time, scheme_->time() - time.start, step_);
+}
+
+template <int dim>
+bool Simulation<dim>::reach_frame() {
+  if (scene_options_.output.frame_interval)
+    return frame_times_.reach(scheme_->time(), last_dt_);
+  return frame_times_.reach(fraction_done(), part_of_run(scene_options_.time, last_dt_, 1));
 }
 
 template <int dim>
@@ -236,11 +255,12 @@ bool Simulation<dim>::step() {
     return false;
   recorded([&] {
     const auto step_start = Clock::now();
-    const double dt = next_step();
-    if (!take_step(dt, step_start))
+    const StepBound next = next_step();
+    if (!take_step(next.dt, step_start))
       return;
     ++step_;
-    last_dt_ = dt;
+    last_dt_ = next.dt;
+    bound_of_step_ = next.reason;
     summary_.count(*report_);
     warnings_.after_step(step_, *report_, components_, log_);
     step_seconds_ = seconds_since(step_start);
@@ -281,15 +301,24 @@ void Simulation<dim>::write_rows() {
 }
 
 template <int dim>
+  progress.bound = bound_of_step_;
 void Simulation<dim>::write_what_is_due() {
   const OutputOptions& output = scene_options_.output;
-  const bool is_due = frame_times_.reach(scheme_->time(), last_dt_) || frames_.n_frames() == 0;
+  const bool is_due = reach_frame() || frames_.n_frames() == 0;
   if (output.frames && is_due)
     last_frame_ = scheme_->time();
   if (output.frames && (is_due || finished()))
     write_frame();
-  if (output.checkpoint_interval > 0 && checkpoint_times_.reach(scheme_->time(), last_dt_))
+  if (checkpoint_is_due())
     write_checkpoint();
+}
+
+template <int dim>
+bool Simulation<dim>::checkpoint_is_due() {
+  const std::optional<double>& interval = scene_options_.output.checkpoint_interval;
+  if (!interval)
+    return checkpoint_clock_.reach(comm_);
+  return *interval > 0 && checkpoint_times_.reach(scheme_->time(), last_dt_);
 }
 
 template <int dim>

@@ -42,9 +42,7 @@ class Simulation {
              const RunOptions& options, const Communicator& comm, const Log& log);
 
   /// Tells what is active, why, and what it costs in memory; for --explain and --validate.
-  std::string explain() {
-    return explanation(components_, *scheme_, scene_options_.step.prediction.incremental_pressure);
-  }
+  std::string explain() { return explanation(components_, *scheme_, scene_options_); }
   /// Runs to the end or to a signal; returns the exit code (0, or 128 + signal). Collective.
   int run();
 
@@ -74,12 +72,13 @@ class Simulation {
   Frame frame() const;
 
  private:
-  double next_step() const;
+  StepBound next_step();
   bool finished() const;
   /// False if a signal ended it between two of its stages, because it takes long. Collective.
   bool take_step(double dt, std::chrono::steady_clock::time_point start);
   void write_rows();
   void write_what_is_due();
+  bool checkpoint_is_due();
   /// Calls f; what it throws is told to summary.json too.
   template <typename Function>
   void recorded(const Function& f);
@@ -97,8 +96,10 @@ class Simulation {
   void load_checkpoint();
   void resume_frames();
   double fraction_done() const;
-
+  /// After each step in turn, as Schedule::reach: whether a frame is due.
+  bool reach_frame();
   std::unique_ptr<FolderLock> folder_lock_;  // on rank 0, until the last is written
+
   ParameterList scene_;
   RunOptions options_;
   SceneOptions scene_options_;
@@ -110,7 +111,9 @@ class Simulation {
   RunTables<dim> tables_;
   ObserverTables<dim> observers_;
   FrameWriter frames_;
-  Schedule frame_times_, checkpoint_times_;
+  Schedule frame_times_;  ///< in simulated time or, without an interval, in parts of the run
+  Schedule checkpoint_times_;
+  WallClockSchedule checkpoint_clock_;  ///< where the scene gives no interval of them
   static constexpr double never_ = -1e300;
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;
@@ -119,6 +122,7 @@ class Simulation {
   double last_frame_ = never_;                ///< time of the last frame that was due [s]
   double fraction_at_begin_ = 0;              ///< part of the run done before this program [1]
   const DumpingStrategy* dumping_ = nullptr;  ///< strategy of --dump-system; `components_` owns it
+  std::string bound_of_step_;                 ///< bound of the last step; empty: the CFL number
   std::optional<StepReport<dim>> report_;     ///< report of the last step
   double step_seconds_ = 0;                   ///< wall time of the last step [s]
   int signal_ = 0;                            ///< signal that ended the run; 0: none

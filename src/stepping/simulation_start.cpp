@@ -70,7 +70,7 @@ void Simulation<dim>::resume_frames() {
   const double now = scheme_->time();
   const bool was_due = last_frame_ == never_ || last_frame_ >= now;
   frames_.resume(was_due || finished() ? now : std::nextafter(now, never_));
-  frame_times_.reach(now, last_dt_);
+  reach_frame();
 }
 
 template <int dim>
@@ -81,6 +81,7 @@ void Simulation<dim>::load_checkpoint() {
   observers_.load(checkpoint);
   step_ = checkpoint.header().step;
   last_dt_ = checkpoint.file().read_attribute<double>("/", "last dt");
+  checkpoint.check(last_dt_ >= 0, fmt::format("its last step is {} s long", last_dt_));
   if (checkpoint.file().has_attribute("/", "last frame"))  // older ones say nothing of it
     last_frame_ = checkpoint.file().read_attribute<double>("/", "last frame");
   scheme_->resume(checkpoint.header().time, step_, last_dt_);

@@ -5,6 +5,12 @@
 
 namespace lockstep {
 
+double part_of_run(const TimeOptions& options, double time, long long steps) {
+  const double by_time = time / (options.end - options.start);
+  const double by_steps = options.most_steps > 0 ? double(steps) / double(options.most_steps) : 0;
+  return std::max(by_time, by_steps);
+}
+
 double even_step(const TimeOptions& time) {
   const double length = time.end - time.start;
   if (time.fixed_step == 0 || (time.most_steps > 0 && time.most_steps * time.fixed_step < length))
@@ -14,8 +20,10 @@ double even_step(const TimeOptions& time) {
   return std::abs(step - time.fixed_step) < 1e-9 * time.fixed_step ? time.fixed_step : step;
 }
 
-double wanted_step(const TimeOptions& time, double suggested) {
-  return time.fixed_step > 0 ? time.fixed_step : std::min(time.largest_step, suggested);
+StepBound wanted_step(const TimeOptions& time, double suggested) {
+  if (time.fixed_step > 0)
+    return {time.fixed_step, "Fixed Step"};
+  return shorter({suggested}, {time.largest_step, "Largest Step"});
 }
 
 double step_to_end(const TimeOptions& time, double now, double wanted) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "interfaces/step_bound.hpp"
 
 namespace lockstep {
 
@@ -10,14 +11,17 @@ struct TimeOptions {
   long long most_steps = 0;          ///< 0: no limit
 };
 
+/// Part of the run that `time` [s] is of its time, or `steps` of its steps, whichever is more [1].
+double part_of_run(const TimeOptions& options, double time, long long steps);
+
 /// The fixed step, made a little shorter so that steps of one length end at the end, if they get
 /// there: the forces of a last one that is much shorter would be those of another step's errors.
 /// 0 without a fixed step.
 double even_step(const TimeOptions& time);
 
 /// The fixed step; without one that in which nothing passes more than "CFL" cells, as the fluid
-/// suggests, at most the largest one.
-double wanted_step(const TimeOptions& time, double suggested);
+/// suggests (no reason is given then), at most the largest one.
+StepBound wanted_step(const TimeOptions& time, double suggested);
 
 /// The step to take at `now`, at most `wanted`, so that the last one ends at the end. Where steps
 /// of that length do not, the last two share what is left: also fixed ones, of a run that went on

@@ -52,6 +52,7 @@ void declare_targets(ParameterList& list) {
   declare(list, "Targets", ParameterArray<double>(),
           "Errors whose cost is reported: in how many core seconds, with how many cells and how "
           "much memory each series reaches them, cheapest first.");
+  set_positive(list, "Targets");
 }
 
 void declare_reference(ParameterList& list) {

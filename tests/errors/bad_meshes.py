@@ -91,5 +91,10 @@ CASES = [
          **mesh(TETRAHEDRON.replace("f 1 3 2", "f 1 3 9"))),
     Case("a mesh without faces", "no triangles", **mesh(TETRAHEDRON.split("f", 1)[0])),
     Case("an unknown kind of file", "body.ply", **mesh(TETRAHEDRON, "body.ply")),
+    Case("a file that announces more than it has bytes", ["body.off, line 2", "2000000000 entries are announced", "damaged"],
+         **mesh("OFF\n1000000000 1000000000 0\n0 0 0\n", "body.off")),
+    Case("a block of more nodes than bytes", ["body.msh, line 6", "2000000000 entries", "damaged"],
+         scene=SOFT_SCENE_3D, change=(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.msh")),
+         files=[("body.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 2000000000 1 2000000000\n3 1 0 2000000000\n")]),
     Case("a mesh that is no mesh", "OFF", **mesh("solid", "body.off")),
 ]

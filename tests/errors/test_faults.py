@@ -1,10 +1,12 @@
 """Faults of the machine: a killed run, signals, a full disk, a damaged checkpoint."""
 import contextlib
 import csv
+import io
 import os
 import resource
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -13,7 +15,10 @@ from pathlib import Path
 import h5py
 import numpy
 
-from program import SCENE, SIMULATE, command, simulate
+from program import SCENE, SIMULATE, command, simulate, with_checksum, without_checksum
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
 
 SOFT = """<Parameter name="Density" type="double" value="500"/>
       <ParameterList name="Material">
@@ -113,7 +118,7 @@ class Faults(unittest.TestCase):
             self.assert_restarts(folder)
 
     def test_signals(self):
-        for number in (signal.SIGTERM, signal.SIGINT):
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU):
             with self.subTest(signal=number.name), tempfile.TemporaryDirectory() as folder:
                 history = Path(folder) / "output" / "history.csv"
                 with started(folder) as process:
@@ -130,6 +135,29 @@ class Faults(unittest.TestCase):
         for ranks in (1, 2):
             with self.subTest(ranks=ranks), tempfile.TemporaryDirectory() as folder:
                 output = Path(folder) / "output"
+    def test_signals_that_end_no_run(self):
+        """SIGPIPE, and what nohup has ignored; SIGXCPU, which comes each second, is no third signal."""
+        with tempfile.TemporaryDirectory() as folder:
+            history = Path(folder) / "output" / "history.csv"
+            (Path(folder) / "scene.xml").write_text(SCENE)
+            process = subprocess.Popen(["nohup", *command(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            process.stdout.close()  # nobody reads the log any more
+            wait_for(lambda: history.exists() and len(read_table(history)) > 2, process)
+            process.send_signal(signal.SIGHUP)
+            self.assertEqual(process.wait(), 0)
+            self.assert_equals_straight_run(folder)
+        with tempfile.TemporaryDirectory() as folder:
+            history = Path(folder) / "output" / "history.csv"
+            with started(folder) as process:
+                wait_for(lambda: history.exists() and len(read_table(history)) > 2, process)
+                process.send_signal(signal.SIGSTOP)
+                for _ in range(4):
+                    process.send_signal(signal.SIGXCPU)
+                    process.send_signal(signal.SIGCONT)
+                    time.sleep(.001)
+                output, _ = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 128 + signal.SIGXCPU, output)
+
                 with started(folder, *CHECKPOINTS, "--set", "Time/End=1e6") as process:
                     wait_for(lambda: newest_checkpoint(folder), process)
                     process.send_signal(signal.SIGSTOP)
@@ -228,6 +256,57 @@ class Faults(unittest.TestCase):
                     self.assertEqual(result.stderr.count("lockstep: "), 1, result.stderr)
                     self.assertIn("is truncated or damaged, restart from an earlier one", result.stderr)
             self.assertTrue(read_table(Path(folder) / "output" / "history.csv"), "the old run must stay")
+
+    def test_checkpoints_that_make_no_sense(self):
+        """Their checksum is right, and something else than a run wrote them."""
+        nothing, nan = numpy.zeros(0), float("nan")
+        particles, counts = "fluid/interface_particles/values", "fluid/interface_particle_counts/values"
+
+        def dataset(name, change):
+            def edit(file):
+                values = change(file[name][()])
+                del file[name]
+                file[name] = values
+            return edit
+
+        def one(new):
+            def change(values):
+                values.flat[values.size // 2] = new
+                return values
+            return change
+
+        cases = {
+            "text for numbers of cells": dataset("fluid/scaled_pressure/ids", lambda _: numpy.bytes_(b"text")),
+            "a field of another shape": dataset("fluid/velocity/values", lambda values: values[:, :1]),
+            "pressures of a cell missing": dataset("fluid/scaled_pressure/values", lambda values: values[:-1]),
+            "an empty ledger": dataset("fluid/liquid_ledger", lambda _: nothing),
+            "a particle that is nowhere": dataset(particles, one(nan)),
+            "a particle far away": dataset(particles, one(1e9)),
+            "too many particles": dataset(counts, one(2 ** 40)),
+            "fewer particles than none": dataset(counts, one(-6)),
+            "a cell of no kind": dataset("fluid/cells_with_pressure/values", one(77)),
+            "half a body": dataset("rigid bodies/values", lambda values: values[:3]),
+            "a negative step": lambda file: file.attrs.__setitem__("step", -3),
+            "a step that took less than no time": lambda file: file.attrs.__setitem__("last dt", -.1),
+        }
+        ball = {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .2}, "Density": 500., "Position": (.5, .5)}
+        water = xml("Scene", {
+            "Dimension": 2, "Domain": {"Cells": (16, 16)}, "Solids": {"Ball": ball}, "Time": {"Fixed Step": .01},
+            "Fluid": {"Gravity": (0., -9.8), "Free Surface": {"Liquid": {"Pool": {"Type": "level", "Height": .4}}}}})
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(simulate(folder, "--steps", 2, scene=water).returncode, 0)
+            checkpoint = newest_checkpoint(folder)
+            whole = without_checksum(checkpoint.read_bytes())
+            for name, edit in cases.items():
+                with self.subTest(name):
+                    content = io.BytesIO(whole)
+                    with h5py.File(content, "r+") as file:
+                        edit(file)
+                    checkpoint.write_bytes(with_checksum(content.getvalue()))
+                    result = simulate(folder, "--restart", checkpoint, "--steps", 3, scene=water)
+                    self.assertIn(result.returncode, (2, 4), result.stderr)
+                    self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+                    self.assertIn(checkpoint.name, result.stderr)
 
     def test_checkpoint_of_another_scene(self):
         with tempfile.TemporaryDirectory() as folder:

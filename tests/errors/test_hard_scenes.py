@@ -70,6 +70,20 @@ class HardScenes(unittest.TestCase):
             piston = moved(box(.25, 1.4), Amplitude=(.05, 0.), **start_at_rest)
             self.assert_refused(scene(solids={"Piston": piston}, coupling=coupling), 'solid "Piston"', code=3)
 
+    def test_gas_of_constant_volume_that_is_pressed(self):
+        """Between a plate and water on a closed floor; with an open side below the water gives way."""
+        air = {"Free Surface": {"Liquid": {"Pool": {"Type": "level", "Height": .6}}, "Trapped Air": "constant volume",
+                                "Atmosphere": (.5, 1.4)}, "Density": 1000., "Gravity": (0., -9.8)}
+        plate = {"Shape": "plate", "Size": (2., 2.), "Normal": "y"}
+        fast, slow = ({"Piston": {**moved(plate, (.5, 1.2), Amplitude=(0., a)), "Surface Density": 1.}} for a in (.05, .015))
+        self.assert_refused(scene((24, 36), solids=fast, fluid=air, step=.005), "At the start: 0.602 m^2 of gas", '("Piston")',
+                            "0.314 m^2/s", '"ideal gas"')
+        late = {"Piston": {**fast["Piston"], "Motion": {**fast["Piston"]["Motion"], "Phase": -1.5708}}}
+        self.assert_refused(scene((24, 36), solids=late, fluid=air, step=.005), "At 0.0", '("Piston")', code=3)
+        _, message = self.run_scene(scene((24, 36), solids=slow, fluid=air, step=.005), "--steps", 60, code=3)
+        self.assertIn("of gas that keeps its volume", message)
+        self.run_scene(scene((24, 36), {"x lower": {"Type": "open"}}, fast, fluid=air, step=.005), "--steps", 20)
+
     def test_possible(self):
         """All of them in a tank of no open side."""
         solids = {
@@ -85,6 +99,16 @@ class HardScenes(unittest.TestCase):
                 with self.subTest(name, coupling=coupling):
                     rows, _ = self.run_scene(scene(solids={"Mover": solid}, coupling=coupling), "--steps", 30)
                     self.assertEqual(len(rows), 30)
+
+    def test_explain_of_an_empty_tank(self):
+        """A source is to fill it; until then no cell has a pressure."""
+        jet = {"Shape": "ball", "Center": (.5, .8), "Radius": .1, "Liquid": True, "Velocity": (0., -1.)}
+        empty = {"Free Surface": {"Interface": {"Type": "particle level set"}}, "Gravity": (0., -9.8), "Sources": {"Jet": jet}}
+        with tempfile.TemporaryDirectory() as folder:
+            result = simulate(folder, "--explain", scene=scene(fluid=empty, time={"End": 2.}, Output={"Frames": True}))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"frames +about 100: every 0.02 s")
+        self.assertRegex(result.stdout, r"memory so far +\d+ MB over all ranks\n")
 
     def test_a_solid_fills_the_whole_domain(self):
         """There is no pressure to solve for, with whatever strategy."""

@@ -76,6 +76,21 @@ class OutputTimes(unittest.TestCase):
         self.assertEqual(self.frames(), [0, 1, 2, 3])
         self.assertEqual(self.looks(), [0, 1, 2, 3])
 
+    def test_about_a_hundred_frames_by_default(self):
+        """One each hundredth of 275 steps, with the first step at or past it: 3, 6, 9, 11, 14, ..."""
+        self.scene.write_text(SCENE.replace('<Parameter name="Frame Interval" type="double" value="0.025"/>', ""))
+        steps = ("--set", "Time/Fixed Step=.0004", "--set", "Output/Checkpoints/Interval=.011")
+        hundredths = [-(-n * 275 // 100) for n in range(101)]
+        self.run_scene(*steps)
+        self.assertEqual(self.frames(), hundredths)
+        self.run_scene(*steps, restart=138)
+        self.assertEqual(self.frames(), hundredths)
+
+    def test_runs_of_few_steps_write_all_of_them_by_default(self):
+        self.scene.write_text(SCENE.replace('<Parameter name="Frame Interval" type="double" value="0.025"/>', ""))
+        self.run_scene("--set", "Time/Fixed Step=.0004", "--steps", 7)
+        self.assertEqual(self.frames(), list(range(8)))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -85,7 +85,7 @@ class GmshReader {
   }
   long count(std::size_t word) const {
     const long n = lines_.integer(words_[word]);
-    check_input(n >= 0, "{}: a count is negative: {}.", lines_.where(), n);
+    lines_.check_count(n);
     return n;
   }
 

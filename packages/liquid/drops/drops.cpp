@@ -258,6 +258,7 @@ template <int dim>
 void Drops<dim>::load(const CheckpointReader& checkpoint) {
   const Communicator& comm = domain_.grid.comm();
   const auto numbers = checkpoint.file().read_all<double>(file_name);
+  checkpoint.check(numbers.size() % (1 + numbers_of_drop<dim>) == 1, "its drops are incomplete");
   const bool same_ranks = numbers[0] == comm->getSize();
   std::vector<Drop<dim>> drops;
   std::vector<int> holder;

@@ -321,6 +321,8 @@ void VolumeOfFluid<dim>::load(const CheckpointReader& checkpoint) {
               checkpoint);
   domain_.full_halo.fill(phi_);
   const auto numbers = checkpoint.file().read_all<double>("fluid/liquid_ledger");
+  checkpoint.check(numbers.size() == 6 && numbers[0] >= 0 && numbers[1] >= 0 && numbers[1] < 1e9,
+                   "its ledger of the liquid is incomplete");
   n_sweeps_ = static_cast<long long>(numbers[0]);
   n_bodies_ = static_cast<int>(numbers[1]);
   volume_ = numbers[2];

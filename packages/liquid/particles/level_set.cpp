@@ -315,6 +315,7 @@ void LevelSet<dim>::load(const CheckpointReader& checkpoint) {
   load_fields(domain_, {{"interface_distance", {&phi_}}}, checkpoint);
   domain_.full_halo.fill(phi_);
   const auto numbers = checkpoint.file().read_all<double>("fluid/liquid_ledger");
+  checkpoint.check(numbers.size() >= 5, "its ledger of the liquid is incomplete");
   moved_ = numbers[0];
   n_restored_ = static_cast<long long>(numbers[1]);
   loaded_ = VolumeTargets{{numbers.begin() + 5, numbers.end()}, numbers[2], numbers[3], numbers[4]};

@@ -1,5 +1,8 @@
 #include "liquid/particles/particle_storage.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace lockstep {
 
 namespace {
@@ -48,6 +51,9 @@ void load_particles(const MacDomain<dim>& domain, const CheckpointReader& checkp
   std::vector<GlobalIndex> cell_ids, ids;
   list_cells(grid, cells, cell_ids);
   const auto states = checkpoint.read_distributed<long long>(count_name, cell_ids);
+  checkpoint.check(std::all_of(states.begin(), states.end(),
+                               [](long long n) { return n >= 0 && n < 2 * most_in_cell; }),
+                   "its numbers of particles in cells cannot be");
   tiles.assign(grid.n_owned_tiles(), {});
   in_band.assign(grid.n_owned_cells(), 0);
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -55,16 +61,21 @@ void load_particles(const MacDomain<dim>& domain, const CheckpointReader& checkp
     for (GlobalIndex k = 0; k < states[i] / 2; ++k)
       ids.push_back(cell_ids[i] * most_in_cell + k);
   }
-  const auto values = checkpoint.read_distributed<double>(particle_name, ids);
+  const auto values = checkpoint.read_distributed<double>(particle_name, ids, dim + 1);
   auto value = values.begin();
+  bool are_in_their_cells = true;
   for (const GlobalIndex id : ids) {
     Particle<dim> particle;
-    for (float& x : particle.x)
+    for (float& x : particle.x) {
+      are_in_their_cells = are_in_their_cells && *value >= 0 && *value < tile_width<dim>;
       x = static_cast<float>(*value++);
+    }
     particle.radius = static_cast<float>(*value++);
     const int cell = grid.cell_of_global_id(id / most_in_cell);
+    are_in_their_cells = are_in_their_cells && std::isfinite(particle.radius);
     tiles[TiledGrid<dim>::tile_of(cell)].push_back(particle);
   }
+  checkpoint.check(are_in_their_cells, "a particle is not in the tile that it belongs to");
 }
 
 template void save_particles<2>(const MacDomain<2>&, const ParticleTiles<2>&,

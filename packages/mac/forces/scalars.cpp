@@ -96,6 +96,10 @@ Scalars<dim>::Scalars(const MacDomain<dim>& domain, const ParameterList& fluid) 
   for (auto it = sources.begin(); it != sources.end(); ++it) {
     const std::string name = sources.name(it);
     sources_.push_back(read_source<dim>(sources.sublist(name)));
+    check_input(domain.bounds().intersects(sources_.back().shape.bounds()),
+                "The source \"{}\" in \"Fluid/Sources\" lies outside of the domain and feeds "
+                "nothing; move it inside.",
+                name);
     check_input(
         !sources_.back().liquid || fluid.isSublist("Free Surface"),
         "The source \"{}\" in \"Fluid/Sources\" feeds liquid, but the fluid fills its domain "

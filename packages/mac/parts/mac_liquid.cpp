@@ -90,14 +90,22 @@ void MacLiquid<dim>::push_surface(double dt) {
 /// their length (Brackbill et al. 1992, without air); implicit, it is stable to some 12 times that:
 /// beyond, waves reach deeper than the layer that is held back.
 template <int dim>
-double MacLiquid<dim>::largest_stable_step() const {
+StepBound MacLiquid<dim>::largest_stable_step() const {
   const double g = flow_.parameters.forces.uniform().norm(), h = flow_.domain.spacing();
-  const double by_gravity = g > 0 ? std::sqrt(h / g) : 1e300;
+  StepBound by_gravity;
+  if (g > 0)
+    by_gravity = {std::sqrt(h / g), "gravity waves"};
   const double tension = liquid_.tension();
   if (tension == 0)
     return by_gravity;
-  const double part = liquid_.tension_is_implicit() ? 8 * 0.28 : 0.28;
-  return std::min(by_gravity, part * std::sqrt(flow_.parameters.density * h * h * h / tension));
+  StepBound by_tension{0.28 * std::sqrt(flow_.parameters.density * h * h * h / tension),
+                       "surface tension"};
+  if (liquid_.tension_is_implicit())
+    by_tension.dt *= 8;
+  else
+    by_tension.remedy =
+        "\"Fluid/Free Surface/Time Integration\" = semi-implicit allows 8 times as much.";
+  return shorter(by_gravity, by_tension);
 }
 
 template class MacLiquid<2>;

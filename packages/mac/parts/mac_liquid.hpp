@@ -33,7 +33,7 @@ class MacLiquid : public LiquidFluid<dim> {
   void push_surface(double dt);
   /// Bounds the last step's pressure in cells beside the air. Collective.
   void bound_pressure(CellField& pressure) const;
-  double largest_stable_step() const;  ///< [s]. Local.
+  StepBound largest_stable_step() const;  ///< Local.
 
  private:
   MacFlow<dim>& flow_;

@@ -296,6 +296,23 @@ void MacTiles<dim>::save(CheckpointWriter& checkpoint) const {
 }
 
 template <int dim>
+void MacTiles<dim>::check_owners(const CheckpointReader& checkpoint, const TileOwners& owners,
+                                 long long n_ranks) const {
+  const auto& lattice = flow_.domain.grid.tile_lattice();
+  GlobalIndex n_tiles = 1;
+  for (int a = 0; a < dim; ++a)
+    n_tiles *= lattice.n_tiles()[a];
+  const auto exists = [&](GlobalIndex tile) { return tile >= 0 && tile < n_tiles; };
+  const auto is_rank = [&](int rank) { return rank >= 0 && rank < n_ranks; };
+  checkpoint.check(!owners.tiles.empty() && owners.ranks.size() == owners.tiles.size() &&
+                       std::all_of(owners.tiles.begin(), owners.tiles.end(), exists) &&
+                       std::adjacent_find(owners.tiles.begin(), owners.tiles.end(),
+                                          std::greater_equal<>()) == owners.tiles.end() &&
+                       std::all_of(owners.ranks.begin(), owners.ranks.end(), is_rank),
+                   "its tiles and their ranks cannot be");
+}
+
+template <int dim>
 void MacTiles<dim>::load(const CheckpointReader& checkpoint) {
   const Hdf5File& file = checkpoint.file();
   if (!file.exists("fluid/tiles"))
@@ -306,13 +323,15 @@ void MacTiles<dim>::load(const CheckpointReader& checkpoint) {
   for (const long long rank : file.read_all<long long>("fluid/tiles/values"))
     owners.ranks.push_back(static_cast<int>(rank));
   const Communicator& comm = flow_.domain.grid.comm();
+  const auto n_ranks = file.read_attribute<long long>("fluid/tiles", "ranks");
+  check_owners(checkpoint, owners, n_ranks);
   if (file.has_attribute("fluid/tiles", "steps_to_sharing"))
     steps_to_sharing_ =
         static_cast<int>(file.read_attribute<long long>("fluid/tiles", "steps_to_sharing"));
   if (file.has_attribute("fluid/tiles", "steps_since_regrid"))
     steps_since_regrid_ =
         static_cast<int>(file.read_attribute<long long>("fluid/tiles", "steps_since_regrid"));
-  if (file.read_attribute<long long>("fluid/tiles", "ranks") != comm->getSize())
+  if (n_ranks != comm->getSize())
     owners = share_tiles(flow_.domain.grid.tile_lattice(), comm, owners.tiles,
                          std::vector<GlobalIndex>(owners.tiles.size(), tile_volume<dim>));
   regrid(owners);

@@ -40,6 +40,8 @@ class MacTiles {
   typename MovingTiles<dim>::Present present(const GridState<dim>& state, double time,
                                              double dt) const;
   void make_first_room(const Surface& surface);
+  void check_owners(const CheckpointReader& checkpoint, const TileOwners& owners,
+                    long long n_ranks) const;
   bool share_work();
   /// Other tiles: all fields move; what else was made of the grid waits until geometry is frozen.
   void regrid(const TileOwners& owners);

@@ -113,6 +113,11 @@ void MacFlow<dim>::load(const CheckpointReader& checkpoint) {
   scaled_pressure = accepted_pressure;
   CellField cells(domain.grid.n_stored_cells(), static_cast<double>(CellState::outside));
   load_fields(domain, {{"cells_with_pressure", {&cells}}}, checkpoint);
+  const auto is_state = [](double state) {
+    return state >= 0 && state <= static_cast<double>(CellState::air);
+  };
+  checkpoint.check(std::all_of(cells.begin(), cells.end(), is_state),
+                   "the kinds of its cells cannot be");
   accepted_cells.resize(cells.size());
   for (std::size_t cell = 0; cell < cells.size(); ++cell)
     accepted_cells[cell] = static_cast<CellState>(static_cast<int>(cells[cell]));

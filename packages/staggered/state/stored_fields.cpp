@@ -44,7 +44,8 @@ void load_fields(const MacDomain<dim>& domain, const std::vector<StoredField>& f
                  const CheckpointReader& checkpoint) {
   const SavedCells<dim> saved(domain.grid);
   for (const StoredField& field : fields) {
-    const auto values = checkpoint.read_distributed<double>("fluid/" + field.name, saved.ids);
+    const auto values = checkpoint.read_distributed<double>(
+        "fluid/" + field.name, saved.ids, static_cast<int>(field.components.size()));
     auto value = values.begin();
     for (const int cell : saved.cells)
       for (CellField* component : field.components)

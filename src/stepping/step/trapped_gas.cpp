@@ -2,10 +2,30 @@
 
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "base/errors.hpp"
+#include "base/shortened.hpp"
 
 namespace lockstep {
+
+namespace {
+
+/// Names of the solids that a script moves, for messages: ' ("Piston")', or nothing.
+template <int dim>
+std::string prescribed_names(const SolidSystem<dim>& solids) {
+  std::vector<std::string> names;
+  const std::vector<SolidState<dim>> states = solids.states();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (solids.solids()[i].prescribed && !states[i].velocity.isZero())
+      names.push_back('"' + solids.solids()[i].name + '"');
+  }
+  return names.empty()
+             ? ""
+             : fmt::format(" ({})", shortened(fmt::format("{}", fmt::join(names, ", ")), 200));
+}
+
+}  // namespace
 
 template <int dim>
 TrappedGas<dim>::TrappedGas(const Components<dim>& components)
@@ -92,8 +112,44 @@ void TrappedGas<dim>::solve(const StepContext<dim>& context, const BlockSystem& 
   };
   solution.gas_pressure = solve_with_gas(gas, *components_.strategy, blocks, request, solution.rhs,
                                          solution.unknowns, solution.report);
+  if (!context.moves_positions)
+    check_volumes(context, gas, solution);
   solution.gas_momentum = make_vector(solids.map());
   coupling_->add_gas_push(solution.gas_pressure, *solution.gas_momentum);
+}
+
+/// Pressures of bubbles that something gives way to leave them the rate that is wanted. The grid
+/// sees solids that cross each other as a little more or less than they are: that may change a
+/// bubble, too, but not by much, and it comes back.
+template <int dim>
+void TrappedGas<dim>::check_volumes(const StepContext<dim>& context, const GasProblem& gas,
+                                    const CoupledSolution& solution) const {
+  constexpr double most = 1e-3, round_off = 1e-6;  // parts of the volume
+  const auto keeps_volume = [](const GasBubble& bubble) { return bubble.keeps_volume; };
+  if (std::none_of(gas.bubbles.begin(), gas.bubbles.end(), keeps_volume))
+    return;
+  const double smallest = std::pow(3 * components_.fluid->smallest_length(), dim);
+  const std::vector<double> rates = gas.rates(solution.unknowns, false);
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    const GasBubble& bubble = gas.bubbles[k];
+    const double rate = rates[k] + gas.conductance[k] * solution.gas_pressure[k];
+    const double wanted = bubble.missing / gas.step_dt;
+    const double grown = gas.step_dt * std::abs(rate) / bubble.volume;
+    const bool gets_worse = rate * wanted <= 0 && grown > round_off;
+    const bool is_impossible =
+        gets_worse && std::max(grown, std::abs(bubble.missing) / bubble.volume) > most;
+    if (!bubble.keeps_volume || bubble.volume <= smallest || !is_impossible)
+      continue;
+    const bool at_start = context.step.number == 1;
+    const std::string message = fmt::format(
+        "{}: {:.3g} {unit} of gas that keeps its volume are closed in, but what is prescribed{} "
+        "changes them by {:.3g} {unit}/s and nothing around them gives way. Let the gas out, move "
+        "so that its volume stays, or set \"Trapped Air\" to \"ideal gas\".",
+        at_start ? "At the start" : fmt::format("At {:.6g} s", context.step.end()), bubble.volume,
+        prescribed_names(*components_.solids), rate, fmt::arg("unit", dim == 2 ? "m^2" : "m^3"));
+    check_input(!at_start, "{}", message);
+    check_solve(false, "{}", message);
+  }
 }
 
 template <int dim>

@@ -28,6 +28,10 @@ class TrappedGas {
                        const SolveRequest& request, CoupledSolution& solution) const;
 
  private:
+  /// Throws InputError in the first step, SolveError later, if the solution changes a bubble that
+  /// keeps its volume, because nothing around it gives way. Collective.
+  void check_volumes(const StepContext<dim>& context, const GasProblem& gas,
+                     const CoupledSolution& solution) const;
   bool is_there() const;
   GasProblem problem(double dt, double step_dt) const;
 

@@ -226,13 +226,14 @@ TEST(SubSteps, AreAsFewAsTheStepNeeds) {
 
 /// Every node of a tethered block is one oscillator, of omega = 3: the force is its path's mean.
 TEST(SubSteps, ForceIsTheMeanOverThePath) {
-  const std::string tethered =
-      box("1, 0.5, 0.5", "0.25") + material("corotated") + number("Density", "4") + sub_steps("5");
+  const std::string tethered = box("1, 0.5, 0.5", "0.25") + material("corotated") +
+                               number("Density", "4") + text("Time Integration", "semi-implicit") +
+                               sub_steps("5");
   const auto ends = numbers("Lower", "-1, -1, -1") + numbers("Upper", "1, 1, 1");
   const auto solids =
       model<3>({tethered + list("Tethers", list("all", ends + number("Stiffness", "9") +
                                                            numbers("Offset", "0, 0.1, 0")))});
-  const double stable = solids->largest_stable_step() / 2.5;
+  const double stable = solids->largest_stable_step().dt / 2.5;
   const double dt = 2.2 * stable;
   solids->begin_step(0, dt);
   const SubSteps steps = sub_steps_for(dt, stable, 5);
@@ -276,12 +277,13 @@ std::vector<Point<2>> elastic_impulses(DeformableSolids<2>& solids) {
 TEST(SubSteps, BodiesSideBySideFeelWhatEachFeelsAlone) {
   const auto stretched = [](const std::string& stiffness, const std::string& place) {
     return box("1, 0.5", "0.25") + material("corotated", stiffness) + number("Density", "1") +
-           numbers("Stretch", "1.1, 0.95") + numbers("Position", place) + sub_steps("40");
+           numbers("Stretch", "1.1, 0.95") + numbers("Position", place) +
+           text("Time Integration", "semi-implicit") + sub_steps("40");
   };
   // Two take as many sub-steps, one more, one none.
   const std::vector<std::string> contents{stretched("1e4", "0, 0"), stretched("4e4", "2, 0"),
                                           stretched("1", "4, 0"), stretched("1e4", "6, 0")};
-  const double dt = 4 / 20. * model<2>({contents[0]})->largest_stable_step();
+  const double dt = 4 / 20. * model<2>({contents[0]})->largest_stable_step().dt;
   const auto together = model<2>(contents);
   together->begin_step(0, dt);
   std::vector<Point<2>> alone;
@@ -301,10 +303,11 @@ TEST(SubSteps, BodiesSideBySideFeelWhatEachFeelsAlone) {
 TEST(SubSteps, MeansAreFoundAnewWhereTheyDiffer) {
   const std::string content =
       box("1, 0.5", "0.25") + material("corotated", "1e4") + number("Density", "1") +
-      numbers("Stretch", "1.1, 0.95") + sub_steps("40") +
+      numbers("Stretch", "1.1, 0.95") + text("Time Integration", "semi-implicit") +
+      sub_steps("40") +
       list("Pinned", list("end", numbers("Lower", "-0.5, -0.25") + numbers("Upper", "-0.5, 0.25") +
                                      number("End", "1")));
-  const double dt = 4 / 20. * model<2>({content})->largest_stable_step();
+  const double dt = 4 / 20. * model<2>({content})->largest_stable_step().dt;
   const auto solids = model<2>({content});
   for (const auto& [time, length] :
        {std::pair(0., dt), std::pair(0.1, dt), std::pair(0.2, 2 * dt), std::pair(2., 2 * dt)}) {
@@ -326,7 +329,7 @@ TEST(SubSteps, StiffBodyIsStableAtTenTimesItsStep) {
       return state.elastic_energy + state.kinetic_energy;
     };
     const double before = energy();
-    const double dt = 10 / 20. * alone.solids.largest_stable_step();
+    const double dt = 10 / 20. * alone.solids.largest_stable_step().dt;
     for (int i = 0; i < 100; ++i) {
       alone.step(dt);
       EXPECT_LE(energy(), 1.2 * before) << i;

@@ -88,6 +88,17 @@ TEST(Input, Cloth) {
   EXPECT_FALSE(made.closed);
 }
 
+TEST(Input, SubStepsAreOfExplicitForces) {
+  const std::string sub_steps = R"(<Parameter name="Most Sub-Steps" type="int" value="4"/>)";
+  const std::string ball = geometry("ball", number("Radius", "1"));
+  EXPECT_THAT(error([&] { cloth<3>(ball + sheet + sub_steps); }),
+              AllOf(HasSubstr("\"Flag\""), HasSubstr("semi-implicit or explicit")));
+  EXPECT_EQ(error([&] {
+              cloth<3>(ball + sheet + sub_steps + text("Time Integration", "semi-implicit"));
+            }),
+            "");
+}
+
 // Linear elasticity takes a rotation for strain: it counts from how the body lies at the start.
 TEST(Input, ALinearBodyIsAtRestHoweverItIsTurned) {
   const auto energy = [](const DeformableBody<3>& made) {
@@ -124,17 +135,14 @@ TEST(Input, MasslessCloth) {
                                                      number("Mesh Spacing", "0.25")) +
                                number("Young&apos;s Modulus", "1e4") + number("Thickness", "1e-3") +
                                number("Surface Density", "0") + text("Bending", "none");
-  const std::string refused = error([&] { cloth<3>(massless); });
+  const std::string refused =
+      error([&] { cloth<3>(massless + text("Time Integration", "semi-implicit")); });
   EXPECT_THAT(refused, HasSubstr("fully-implicit"));
   // Impulses along edges have nothing to act on.
-  const std::string limited = error([&] {
-    cloth<3>(massless + text("Time Integration", "fully-implicit") +
-             number("Stretch Limit", "0.1"));
-  });
+  const std::string limited = error([&] { cloth<3>(massless + number("Stretch Limit", "0.1")); });
   EXPECT_THAT(limited, AllOf(HasSubstr("Flag"), HasSubstr("\"Stretch Limit\"")));
   std::vector<DeformableBody<3>> bodies;
-  bodies.push_back(cloth<3>(massless + text("Time Integration", "fully-implicit") +
-                            numbers("Velocity", "1, 2, 3")));
+  bodies.push_back(cloth<3>(massless + numbers("Velocity", "1, 2, 3")));
   Alone<3> alone(std::make_unique<DeformableSolids<3>>("cloth", std::move(bodies),
                                                        Point<3>(0, -10, 0), world()));
   const SolidState<3> state = alone.solids.states()[0];

@@ -17,6 +17,7 @@
 namespace lockstep::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -51,7 +52,7 @@ void expect_all_entities(const Communicator& comm, const std::string& path) {
     if (i / 4 % comm->getSize() == comm->getRank())
       wanted.push_back(3 * i);
   }
-  const auto pressure = reader.read_distributed<double>("fluid/pressure", wanted);
+  const auto pressure = reader.read_distributed<double>("fluid/pressure", wanted, 2);
   ASSERT_EQ(pressure.size(), 2 * wanted.size());
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     EXPECT_EQ(pressure[2 * i], wanted[i]);
@@ -116,6 +117,11 @@ TEST(Checkpoint, SaysWhatIsMissing) {
   EXPECT_THAT(message_of<InputError>(
                   [&] { reader.read_distributed<double>("fluid/phase", {is_root(comm) ? 4 : 3}); }),
               HasSubstr("no entry number 4"));
+  EXPECT_THAT(
+      message_of<OutputError>([&] { reader.read_distributed<double>("fluid/pressure", {}, 3); }),
+      AllOf(HasSubstr("'fluid/pressure' does not hold 3"), HasSubstr("an earlier one")));
+  EXPECT_THAT(message_of<OutputError>([&] { reader.check(!is_root(comm), "senseless"); }),
+              HasSubstr("(senseless)"));
   EXPECT_THAT(message_of<OutputError>([&] {
                 CheckpointWriter writer(comm, folder, {});
                 writer.write_distributed<double>("twice", {5, 5}, {1, 2});

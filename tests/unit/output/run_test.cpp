@@ -36,6 +36,8 @@ TEST(Progress, IsOneLineAStep) {
   EXPECT_EQ(progress_line(progress),
             "step   120  t 1.200 s  dt 10.00 ms  CFL 0.84  S1 34  F2 21  S2 33 it  |div| 3e-9  "
             "dP 2e-15  0.41 s  eta 3m10s");
+  progress.bound = "surface tension";
+  EXPECT_THAT(progress_line(progress), HasSubstr("  dt 10.00 ms (surface tension)  CFL 0.84"));
 }
 
 TEST(Progress, EstimatesTheRemainingTime) {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Tpetra_Core.hpp>
+#include <thread>
+
 namespace lockstep::test {
 namespace {
 
@@ -51,6 +54,16 @@ TEST(Schedule, GoesOnAfterARestart) {
   Schedule schedule(0, 0.025);
   schedule.reach(0.07, 0.01);
   EXPECT_THAT(due(schedule, 0.07, 0.01, 4), ElementsAre(1, 3));
+}
+
+TEST(WallClockSchedule, ComesOnceInAnInterval) {
+  const Communicator comm = Tpetra::getDefaultComm();
+  WallClockSchedule often(0.05), seldom(1000);
+  EXPECT_FALSE(often.reach(comm));
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  EXPECT_TRUE(often.reach(comm));
+  EXPECT_FALSE(often.reach(comm));
+  EXPECT_FALSE(seldom.reach(comm));
 }
 
 }  // namespace

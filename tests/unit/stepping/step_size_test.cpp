@@ -23,8 +23,8 @@ TEST(StepSize, NothingPassesMoreCellsThanTheCflNumber) {
   box.n_cells = {2, 2};
   box.spacing = 0.02;
   const FakeFluid<2> resting(box, Tpetra::getDefaultComm());
-  EXPECT_EQ(wanted_step(until(10), resting.suggested_step(0.5, 0)), 0.1);
-  EXPECT_DOUBLE_EQ(wanted_step(until(10), resting.suggested_step(0.5, 2)), 0.005);
+  EXPECT_EQ(wanted_step(until(10), resting.suggested_step(0.5, 0)).dt, 0.1);
+  EXPECT_DOUBLE_EQ(wanted_step(until(10), resting.suggested_step(0.5, 2)).dt, 0.005);
   // The velocity that gravity adds within the step counts as well.
   box.gravity = {0, -14};
   FakeFluid<2> fluid(box, Tpetra::getDefaultComm());
@@ -38,7 +38,7 @@ TEST(StepSize, NothingPassesMoreCellsThanTheCflNumber) {
 TEST(StepSize, AFixedStepIsTaken) {
   TimeOptions time = until(10);
   time.fixed_step = 0.25;
-  EXPECT_EQ(wanted_step(time, 1e-6), 0.25);
+  EXPECT_EQ(wanted_step(time, 1e-6).dt, 0.25);
 }
 
 TEST(StepSize, FixedStepsDivideTheTimeEvenly) {
@@ -72,6 +72,23 @@ TEST(StepSize, TheLastStepsEndAtTheEnd) {
   // Fixed steps after some that had to be shorter.
   EXPECT_DOUBLE_EQ(step_to_end(time, 0.85, 0.1), 0.075);
   EXPECT_EQ(step_to_end(time, 0.95, 0.1), 1 - 0.95);
+}
+
+TEST(StepSize, SaysWhatBoundsIt) {
+  TimeOptions time = until(10);
+  EXPECT_EQ(wanted_step(time, 1e-6).reason, "");  // the CFL number
+  EXPECT_EQ(wanted_step(time, 1).reason, "Largest Step");
+  EXPECT_EQ(shorter(wanted_step(time, 1), {1e-3, "gravity waves"}).reason, "gravity waves");
+  time.fixed_step = 0.25;
+  EXPECT_EQ(wanted_step(time, 1e-6).reason, "Fixed Step");
+}
+
+TEST(StepSize, IsAPartOfTheRunByTimeOrBySteps) {
+  TimeOptions time = until(10);
+  EXPECT_DOUBLE_EQ(part_of_run(time, 2.5, 7), 0.25);
+  time.most_steps = 20;
+  EXPECT_DOUBLE_EQ(part_of_run(time, 2.5, 7), 0.35);
+  EXPECT_DOUBLE_EQ(part_of_run(time, 5, 7), 0.5);
 }
 
 TEST(StepSize, ManyFixedStepsAddedUpTakeNoStepMore) {
