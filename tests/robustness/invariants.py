@@ -5,6 +5,7 @@
 | momentum, angular momentum | LEDGER of the step's scale (docs/method.md, the ledger) |
 | liquid | its volume is what known fluxes make of it, to LIQUID or what one closed void holds |
 | divergence | DIVERGENCE of the largest speed over a cell; with tension or gas, which push over down to 1e-5 of a cell and so set the scale of a solve, DIVERGENCE_PUSHED |
+| contact | what touches moves into it by at most CONTACT of the largest speed, where contacts are part of the coupled solve |
 | finite | every number of history.csv, bodies.csv and of all frames |
 | scalar | smoke and temperature between their least and most initial, inflowing and held values |
 | energy | kinetic and elastic, at most GROWTH times the start's and gravity's work, where nothing else does work |
@@ -23,6 +24,7 @@ LEDGER = 1e-10
 LIQUID = 5e-2  # scenes of some hundred cells; a shift mends a fifth of a cell a step
 SMALLEST_VOID = {2: 8, 3: 27}  # cells, the default
 FASTEST_OF_FRACTIONS = 2  # cells a step
+CONTACT = 1e-4  # contacts are decided to 1e-5 of what gravity adds in a step, which a speed is at least
 DIVERGENCE = 1e-6
 DIVERGENCE_PUSHED = 1e-5
 RANKS = 1e-6
@@ -130,6 +132,9 @@ def check_tables(scene, tables):
         if worst > max(LIQUID * abs(target).max(), largest_void(scene)):
             yield f"liquid: off by {worst / abs(target).max():.1e} of its volume"
     _, h, speed = scales(scene, tables)
+    worst = number(history, "contact_residual").max() / speed
+    if worst > CONTACT:
+        yield f"contact: {worst:.1e} of the speed into what touches"
     worst = number(history, "max_divergence").max() * h / speed
     is_pushed = "Surface Tension" in scene.xml or "Trapped Air" in scene.xml
     if worst > (DIVERGENCE_PUSHED if is_pushed else DIVERGENCE):

@@ -9,6 +9,7 @@ import joints
 import known_failures
 import liquids
 import long_tension
+import resting
 import seams
 from runs import program
 from scenes import random_scene
@@ -23,6 +24,7 @@ FAMILIES = {
     "trapped air": gases.FIRST_SEED,
     "semi-implicit tension": long_tension.FIRST_SEED,
     "periodic seams": seams.FIRST_SEED,
+    "contact in water": resting.FIRST_SEED,
 }
 # Solids, and how often each thing that a scene may say was drawn.
 FEATURES = {

@@ -12,6 +12,7 @@ import gases
 import joints
 import liquids
 import long_tension
+import resting
 import seams
 import solvers
 from liquids import AXES
@@ -344,7 +345,7 @@ def observers(world):
 def random_scene(seed):
     """The scene that this seed names, as a Scene."""
     world = World(seed)
-    at_seam = seed >= seams.FIRST_SEED
+    at_seam, rests = seams.FIRST_SEED <= seed < resting.FIRST_SEED, seed >= resting.FIRST_SEED
     if at_seam:
         seams.fill_tiles(world)
     side_lists = sides(world)
@@ -352,7 +353,7 @@ def random_scene(seed):
         seams.close_ring(world, side_lists)
     content = {"Dimension": world.dimension, "Title": f"Random scene {seed}",
                "Domain": {"Lower": world.lower, "Upper": world.upper, "Cells": world.cells, "Sides": side_lists},
-               "Fluid": fluid(world, side_lists), "Solids": solids(world)}
+               "Fluid": fluid(world, side_lists), "Solids": {} if rests else solids(world)}
     if at_seam:
         seams.move_to_seam(world, content["Solids"], seed)
     elif liquids.FIRST_SEED <= seed < joints.FIRST_SEED or seed >= gases.FIRST_SEED:
@@ -361,8 +362,12 @@ def random_scene(seed):
         long_tension.lengthen(world, content, seed)
     elif gases.FIRST_SEED <= seed < seams.FIRST_SEED:
         gases.trap_air(world, content, seed)
+    elif rests:
+        resting.lay_down(world, content, seed)
     content["Coupling"] = coupling(world)
     content["Contact"] = contact(world, content["Solids"])
+    if rests:
+        content["Contact"]["Type"] = "gauss seidel"
     if joints.FIRST_SEED <= seed < gases.FIRST_SEED:
         joints.add_joints(world, content, seed)
     content["Solver"] = solvers.solver(world, content["Coupling"], content["Solids"])
