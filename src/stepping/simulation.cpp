@@ -295,13 +295,13 @@ void Simulation<dim>::write_rows() {
     observers_.observe(step_, view(states), finished());
   }
   StepProgress progress = progress_of<dim>(step_, *report_, step_seconds_);
+  progress.bound = bound_of_step_;
   progress.remaining_seconds =
       remaining_seconds(seconds_since(start_), fraction_at_begin_, fraction_done());
   log_.normal("{}", progress_line(progress));
 }
 
 template <int dim>
-  progress.bound = bound_of_step_;
 void Simulation<dim>::write_what_is_due() {
   const OutputOptions& output = scene_options_.output;
   const bool is_due = reach_frame() || frames_.n_frames() == 0;

@@ -98,8 +98,8 @@ class Simulation {
   double fraction_done() const;
   /// After each step in turn, as Schedule::reach: whether a frame is due.
   bool reach_frame();
-  std::unique_ptr<FolderLock> folder_lock_;  // on rank 0, until the last is written
 
+  std::unique_ptr<FolderLock> folder_lock_;  // on rank 0, until the last is written
   ParameterList scene_;
   RunOptions options_;
   SceneOptions scene_options_;
@@ -119,10 +119,10 @@ class Simulation {
   long long step_ = 0, first_step_ = 0;
   RunWarnings<dim> warnings_;
   double last_dt_ = 0;
+  std::string bound_of_step_;                 ///< bound of the last step; empty: the CFL number
   double last_frame_ = never_;                ///< time of the last frame that was due [s]
   double fraction_at_begin_ = 0;              ///< part of the run done before this program [1]
   const DumpingStrategy* dumping_ = nullptr;  ///< strategy of --dump-system; `components_` owns it
-  std::string bound_of_step_;                 ///< bound of the last step; empty: the CFL number
   std::optional<StepReport<dim>> report_;     ///< report of the last step
   double step_seconds_ = 0;                   ///< wall time of the last step [s]
   int signal_ = 0;                            ///< signal that ended the run; 0: none

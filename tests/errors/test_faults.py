@@ -130,11 +130,6 @@ class Faults(unittest.TestCase):
                 self.assertIn("Stopped by signal", output)
                 self.assert_restarts(folder)
 
-    def test_one_run_at_a_time_in_a_folder(self):
-        """Another one is refused and changes nothing; once the first has ended, be it by SIGKILL, the folder is free."""
-        for ranks in (1, 2):
-            with self.subTest(ranks=ranks), tempfile.TemporaryDirectory() as folder:
-                output = Path(folder) / "output"
     def test_signals_that_end_no_run(self):
         """SIGPIPE, and what nohup has ignored; SIGXCPU, which comes each second, is no third signal."""
         with tempfile.TemporaryDirectory() as folder:
@@ -158,6 +153,11 @@ class Faults(unittest.TestCase):
                 output, _ = process.communicate(timeout=60)
                 self.assertEqual(process.returncode, 128 + signal.SIGXCPU, output)
 
+    def test_one_run_at_a_time_in_a_folder(self):
+        """Another one is refused and changes nothing; once the first has ended, be it by SIGKILL, the folder is free."""
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks), tempfile.TemporaryDirectory() as folder:
+                output = Path(folder) / "output"
                 with started(folder, *CHECKPOINTS, "--set", "Time/End=1e6") as process:
                     wait_for(lambda: newest_checkpoint(folder), process)
                     process.send_signal(signal.SIGSTOP)
