@@ -25,7 +25,7 @@ void RunWarnings<dim>::warn_of_watches(long long step, const std::vector<Watched
 
 template <int dim>
 void RunWarnings<dim>::warn_of_volume(long long step, const LiquidReport& liquid, const Log& log) {
-  constexpr double most = 1e-3;  // of the liquid
+  constexpr double most = 1e-3;  // part of the liquid
   const double all = liquid.target + liquid.lost, off = liquid.volume - liquid.target;
   if (of_volume_ || std::abs(off) + liquid.lost <= most * all)
     return;

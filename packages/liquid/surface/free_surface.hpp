@@ -14,7 +14,7 @@ template <int dim>
 struct FreeSurface {
   /// phi on all stored cells [m]: negative in the liquid, extrapolated into solids.
   const CellField* distance = nullptr;
-  /// The same with the shift of the short-wave filter, of which surface tension takes the
+  /// phi with the shift of the short-wave filter, of which surface tension takes the
   /// curvature; null without tension.
   const CellField* leading_distance = nullptr;
   /// Part of the way from the centre of a wet cell to that of a dry neighbour at which the surface

@@ -48,8 +48,8 @@ Momentum<2> defect_of_row_2(CoupledCase<2>& c) {
   return defect;
 }
 
-/// A shell round a rectangle and a body, with one column of fluid cells between them. The dual cells
-/// between that column, x = 0.45, and the body hold both surfaces.
+/// A shell round a rectangle and a body, with one column of fluid cells between them. The dual
+/// cells between that column, x = 0.45, and the body hold both surfaces.
 std::vector<FakeBody<2>> neighbours() {
   FakeBody<2> left, right;
   left.surface = rectangle({0.21, 0.33}, {0.4495, 0.72});
