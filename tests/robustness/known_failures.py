@@ -32,6 +32,9 @@ KNOWN = {
     8015: "a heavy body lies on the floor: block-lu ends at 4e-10 with its contacts held, and the scene wants 1e-10",
     8022: BOUNCING + "a ball on another does at 0.2 of the speed",
     8056: BOUNCING + "a ball on another does at 0.03 of the speed",
+    8082: BOUNCING + "0.01 of the speed",
+    8091: BOUNCING + "0.08 of the speed",
+    8096: BOUNCING + "0.08 of the speed",
 }
 
 
