@@ -89,7 +89,7 @@ class VolumeLedger {
  private:
   CellGroups find(const SolidCells<dim>& solids, const CellField& phi) const;
   int body_at(const SolidCells<dim>& solids, const CellField& phi, int cell) const;
-  /// Gives a volume without a component in its closed space, as that of a pocket between bodies, to
+  /// Gives a volume without a component in its closed space, as that of water between bodies, to
   /// all components by their volumes, and takes from them what has come to be loose, so that the
   /// sum of all targets stays. With shells, through which nothing may go, it is lost.
   void share_unassigned(const SolidCells<dim>& solids, double unassigned);
