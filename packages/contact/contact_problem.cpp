@@ -185,10 +185,22 @@ double ContactProblem<dim>::target(const Contact<dim>& contact, const SolidMotio
   const double closing = std::min(-normal_velocity, -before);
   const double restitution =
       mean(contact, &SolidDescription::restitution, options_.wall_restitution);
-  if (restitution > 0 && closing > least_bounce &&
-      normal_velocity < free - rounding::differences * closing)
-    return std::max(free, closing * restitution);
-  return free;
+  if (restitution == 0 || -before <= least_bounce)
+    return free;
+  if (bouncing_ && bouncing_->count(bounce_key(contact)) > 0)
+    return std::max(free, -before * restitution);
+  if (closing <= least_bounce || normal_velocity >= free - rounding::differences * closing)
+    return free;
+  if (bouncing_)
+    bouncing_->insert(bounce_key(contact));
+  return std::max(free, (bouncing_ ? -before : closing) * restitution);
+}
+
+template <int dim>
+std::size_t ContactProblem<dim>::bounce_key(const Contact<dim>& contact) const {
+  const std::size_t pair = 65599 * static_cast<std::size_t>(contact.solid + 1) +
+                           static_cast<std::size_t>(contact.other + 64);
+  return hash_of<dim>(contact.point.position) ^ (pair << 20);
 }
 
 template <int dim>

@@ -26,6 +26,10 @@ class ContactProblem {
                  const std::vector<HalfSpace>& walls, const GaussSeidelOptions& options,
                  const SolidPairs& apart, double spacing, ContactPhase phase, double dt);
 
+  /// Contacts that bounce by an earlier decision of this step, by `bounce_key`: they bounce in this
+  /// one, too, which adds its own. Decisions that a coupled solve asks for one after the other
+  /// would go to and fro between a bounce and none. Before `prepare`.
+  void keep_bouncing(std::set<std::size_t>& bouncing) { bouncing_ = &bouncing; }
   /// Contacts that act without friction, as if they touched, wherever they are; before `prepare`.
   void hold(std::vector<Contact<dim>> contacts) { held_ = std::move(contacts); }
   /// Finds the candidates; false if there is nothing to act on. If none is `expected`, most of the
@@ -78,6 +82,8 @@ class ContactProblem {
   /// Least normal velocity [m/s] for a motion, `before` that of the beginning of the step.
   double target(const Contact<dim>& contact, const SolidMotion<dim>& motion,
                 const SolidMotion<dim>& before) const;
+  /// Names a contact within a step.
+  std::size_t bounce_key(const Contact<dim>& contact) const;
   /// Where the turning of a rigid solid takes a point of it against the normal within the step: to
   /// the end of its arc, or to the lowest point on the way. Other solids do not turn.
   Point<dim> turned_place(const SolidMotion<dim>& motion, int solid, const Point<dim>& x,
@@ -139,6 +145,7 @@ class ContactProblem {
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed
   std::vector<Candidate> candidates_;
   std::vector<Contact<dim>> held_;
+  std::set<std::size_t>* bouncing_ = nullptr;  ///< null: none is kept
   std::vector<Limit> limits_;
   std::map<Pair, std::vector<int>> pairs_;                      ///< candidates of each pair
   std::unordered_map<std::size_t, std::vector<int>> by_place_;  ///< candidates by hash_of

@@ -59,6 +59,7 @@ template <int dim>
 void GaussSeidelContact<dim>::begin_step(double time) {
   time_ = time;
   held_back_.clear();
+  bouncing_.clear();
 }
 
 /// Positions go by velocities in the middle of the step, velocities are those at its end.
@@ -125,6 +126,8 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   const GaussSeidelOptions options = decides ? options_of_decisions(options_) : options_;
   ContactProblem<dim> problem(solids, shapes, walls_, options, apart_among(shapes.solids()),
                               spacing_, phase, dt);
+  if (decides && phase == ContactPhase::velocity)
+    problem.keep_bouncing(bouncing_);
   if (phase == ContactPhase::position)
     held_back_.clear();
   else

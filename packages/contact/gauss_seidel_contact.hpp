@@ -75,6 +75,7 @@ class GaussSeidelContact : public ContactModel<dim> {
   std::vector<std::string> numbers_;  ///< numbers of solids with these names
   RCP<const LinearOperator> known_inverse_;  ///< inverse of which `inverse_mass_` is the copy
   InverseMass inverse_mass_;
+  std::set<std::size_t> bouncing_;           ///< see ContactProblem::keep_bouncing
   std::vector<FoundImpact<dim>> held_back_;  ///< by impact zones, in the positions of this step
   /// By phase, whether there was something to act on last time; results do not depend on it.
   std::array<bool, 2> acted_{};
