@@ -25,7 +25,9 @@ struct LiquidLedger {
   double volume = 0;  ///< volume of the liquid outside solids
   double target = 0;  ///< initial volume plus known fluxes
   double shift = 0;   ///< sum of the magnitudes of all corrections since the start
-  double lost = 0;  ///< volume of components that vanished and left no other in their closed space
+  /// Volume of components that vanished and left no other in their closed space, where shells or a
+  /// lack of other liquid keep it from going elsewhere.
+  double lost = 0;
   int n_components = 0;  ///< connected liquid components
 };
 
