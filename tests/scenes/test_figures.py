@@ -154,7 +154,7 @@ class Bags(unittest.TestCase):
         self.assertAlmostEqual(lifted[-10:].mean() / lifted[:10].mean(), 1, delta=.02)
 
     def test_overflows(self):
-        run = Run("cloth-bags", self.CELLS, *bag_settings(.1, 1.6), end=1.8)
+        run = Run("cloth-bags", self.CELLS, *bag_settings(.1, 2.), end=2.2)
         poured = run.history_of("liquid_volume")[-1] - self.POOL
         held = run.history_of("watch_Left_volume")[-1]
         self.assertAlmostEqual(held / self.FULL, 1, delta=.15)  # half a cell below the rim is 6 %
