@@ -173,6 +173,7 @@ int run(int argc, char** argv, const Communicator& comm) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ignore_closed_pipes();
   keep_freed_memory();
   expect_no_other_ranks();
   auto held_signals = std::make_unique<HeldSignals>();

@@ -180,12 +180,13 @@ double ContactProblem<dim>::target(const Contact<dim>& contact, const SolidMotio
     return excess <= 0 ? free : std::min(push_out_rate * excess, 0.25 * spacing_) / dt_;
   }
   // Forces of this step alone, as those on a resting body, do not bounce. What arrives exactly at
-  // the end of the step does so in the next, whatever the round-off. What does not bounce at all
-  // goes on until it touches.
+  // the end of the step does so in the next, whatever the round-off. A rigid body that does not
+  // bounce at all goes on until it touches; a skin stops at once.
   const double closing = std::min(-normal_velocity, -before);
   const double restitution =
       mean(contact, &SolidDescription::restitution, options_.wall_restitution);
-  if (restitution == 0 || -before <= least_bounce)
+  const bool goes_on = restitution == 0 && !any_bends({contact.solid, contact.other});
+  if (goes_on || -before <= least_bounce)
     return free;
   if (bouncing_ && bouncing_->count(bounce_key(contact)) > 0)
     return std::max(free, -before * restitution);

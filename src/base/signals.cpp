@@ -36,7 +36,10 @@ void install_signal_handlers() {
   }
   // Beyond a limit of the size of files, writing fails with a message instead.
   signal(SIGXFSZ, SIG_IGN);
-  // The log may go into a pipe that is closed; the files of the run are what counts.
+  ignore_closed_pipes();
+}
+
+void ignore_closed_pipes() {
   signal(SIGPIPE, SIG_IGN);
 }
 

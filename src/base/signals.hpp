@@ -11,6 +11,9 @@ namespace lockstep {
 /// and SIGHUP where it was. Note that mpirun, when itself told to stop, kills its ranks a second
 /// later unless its parameter odls_base_sigkill_timeout says otherwise.
 void install_signal_handlers();
+/// Lets no write into a pipe that nobody reads any more end the program: the log may go into one,
+/// and the files of the run are what counts. Part of `install_signal_handlers`. Local.
+void ignore_closed_pipes();
 
 /// Notes a signal as its handler does; 0 forgets it.
 void note_signal(int signal_number);

@@ -6,7 +6,6 @@ exit code 1. A seed of these that does not fail is named too: it goes if that is
 
 LIQUID = "the volume of the liquid is off by 5 to 14 % at a CFL number of 5 on some hundred cells; the bound is 5 %"
 LOOP = "a loop of joints that cannot close"
-BOUNCING = "contacts with restitution bounce in one decision and not in the next, which simulate warns of: "
 CRUSHED = "crushed elements; the run is refused"
 
 KNOWN = {
@@ -28,13 +27,7 @@ KNOWN = {
     5550: LIQUID,
     5573: CRUSHED,
     6136: CRUSHED,
-    8012: BOUNCING + "a light box on the floor moves into it at 9e-4 of the speed",
     8015: "a heavy body lies on the floor: block-lu ends at 4e-10 with its contacts held, and the scene wants 1e-10",
-    8022: BOUNCING + "a ball on another does at 0.2 of the speed",
-    8056: BOUNCING + "a ball on another does at 0.03 of the speed",
-    8082: BOUNCING + "0.01 of the speed",
-    8091: BOUNCING + "0.08 of the speed",
-    8096: BOUNCING + "0.08 of the speed",
 }
 
 

@@ -91,7 +91,7 @@ FEATURES = [
      COUPLED | names("kept", *(f"deformable body/{part}" for part in ("names", "positions", "velocities", "surface velocities")))
      | names("frame", *(f"solids/Soft/{part}" for part in ("vertices", "simplices", "velocity")),
              *(f"solids/Soft_elements/{part}" for part in ELEMENTS.split()))),
-    ("contact", DISCS, {"Contact": {"Type": "gauss seidel"}}, {"stage S2 / contact"}),
+    ("contact", DISCS, {"Contact": {"Type": "gauss seidel"}}, names("stage", "S1 / contact", "S2 / contact")),
     # Closing a joint takes a second solve for the positions.
     ("a joint", DISCS, HINGE, names("kept", "joints/names", "joints/values") | {"file joints.csv"} | solves("S1", STEPS + 1, 2 * STEPS)),
     ("a free surface", TANK, SURFACE,

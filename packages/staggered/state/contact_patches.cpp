@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "staggered/state/covered_sides.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -62,15 +64,11 @@ class PatchFinder {
 
   void look_at(int cell, int axis, int end) {
     const int other = grid_.neighbor(cell, axis, end);
-    const auto step = [&](double n_cells) {
-      return Point<dim>((2 * end - 1) * n_cells * grid_.spacing() * Point<dim>::Unit(axis));
-    };
     if (is_outside(other)) {
       if (!domain_.boundary.side(axis, end).closed())
         return;
       const int solid = surface_.inside(grid_.center(cell));
-      constexpr double beyond = 0.75;  // cells from the centre: a quarter of one outside
-      if (solid >= 0 && surface_.inside(grid_.center(cell) + step(beyond)) != solid)
+      if (solid >= 0 && !goes_through<dim>(domain_, surface_, solid, axis, end))
         faces_.push_back({cell, axis, end, -1, solid});
       return;
     }

@@ -1,5 +1,7 @@
 #include "staggered/state/covered_sides.hpp"
 
+#include <algorithm>
+
 namespace lockstep {
 
 namespace {
@@ -30,21 +32,30 @@ ControlVolume<dim> volume_at_side(const MacDomain<dim>& domain, const MacGeometr
   return volume;
 }
 
-/// True if what covers the face goes on behind it. Where a solid only touches the side the pressure
-/// of the cell acts on its inner faces, and all around: it displaces nothing.
+/// True if a closed solid that touches the face goes through the side there.
 template <int dim>
-bool goes_through(const SurfaceSnapshot<dim>& surface, const ControlVolume<dim>& volume, int end) {
-  constexpr double beyond = 0.25;  // cells
-  Point<dim> place = volume.center;
-  if (volume.open_fraction > 0)
-    place +=
-        volume.open_fraction / (1 - volume.open_fraction) * (volume.center - volume.open_center);
-  const double length = volume.box.sizes().maxCoeff();
-  place[volume.direction] += (end == 0 ? -beyond : beyond) * length;
-  return surface.inside(place) >= 0;
+bool any_goes_through(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface,
+                      const ControlVolume<dim>& volume, int end) {
+  std::vector<int> solids;
+  surface.solids_touching(volume.box, solids);
+  return std::any_of(solids.begin(), solids.end(), [&](int solid) {
+    return surface.solids()[solid].closed &&
+           goes_through<dim>(domain, surface, solid, volume.direction, end);
+  });
 }
 
 }  // namespace
+
+template <int dim>
+bool goes_through(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface, int solid,
+                  int axis, int end) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const double beyond = 0.25 * grid.spacing();
+  const Box<dim> bounds = surface.bounds_of_solid(solid);
+  const double lower = grid.lower()[axis];
+  return end == 0 ? bounds.min()[axis] < lower - beyond
+                  : bounds.max()[axis] > lower + grid.n_cells()[axis] * grid.spacing() + beyond;
+}
 
 template <int dim>
 void add_covered_sides(const MacDomain<dim>& domain, const OpenFractionRule<dim>& rule,
@@ -61,12 +72,11 @@ void add_covered_sides(const MacDomain<dim>& domain, const OpenFractionRule<dim>
           continue;
         auto volume = volume_at_side(domain, geometry, axis, end, cell);
         volume.open_fraction = rule.open_fraction(volume, false, *geometry.state.surface);
-        if (volume.open_fraction >= 1)
+        if (volume.open_fraction >= 1 ||
+            !any_goes_through(domain, *geometry.state.surface, volume, end))
           continue;
         if (volume.open_fraction > 0)
           volume.open_center = rule.open_center(volume, *geometry.state.surface);
-        if (!goes_through(*geometry.state.surface, volume, end))
-          continue;
         geometry.coupled_volumes.push_back(volume);
         if (const int face = end == 0 ? cell : other; face >= 0)
           geometry.face_table.set_open(axis, face, volume.open_fraction);
@@ -75,6 +85,8 @@ void add_covered_sides(const MacDomain<dim>& domain, const OpenFractionRule<dim>
   });
 }
 
+template bool goes_through<2>(const MacDomain<2>&, const SurfaceSnapshot<2>&, int, int, int);
+template bool goes_through<3>(const MacDomain<3>&, const SurfaceSnapshot<3>&, int, int, int);
 template void add_covered_sides<2>(const MacDomain<2>&, const OpenFractionRule<2>&,
                                    MacGeometry<2>&);
 template void add_covered_sides<3>(const MacDomain<3>&, const OpenFractionRule<3>&,

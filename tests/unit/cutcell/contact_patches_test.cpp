@@ -94,7 +94,9 @@ void expect_no_volume() {
     const FullTank<dim> tank(bodies);
     ASSERT_TRUE(tank.fluid->contact_patches());
     EXPECT_LT(tank.volume_rates().template lpNorm<Eigen::Infinity>(), 1e-14);
-    EXPECT_FALSE(tank.system->locks_solids());
+    if (tank.fluid->regions().n_regions == 1) {  // cells cut off between bodies and walls lock them
+      EXPECT_FALSE(tank.system->locks_solids());
+    }
   }
 }
 

@@ -286,19 +286,25 @@ TYPED_TEST(RunTablesOf, BodiesHaveTheirOwnStatesAndImpulses) {
   states[1].name = "Disc";
   RunTables<dim> tables(this->comm, this->folder, nullptr, false);
   tables.start();
+  const auto& of_fluid = this->report.hydrodynamic_impulse;
+  this->report.contact_impulse = {of_fluid[1], of_fluid[0]};
   tables.append(7, this->report, states, 0.5);
   const std::vector<Texts> rows = this->rows("bodies.csv");
   ASSERT_EQ(rows.size(), 2u);
   for (int s = 0; s < 2; ++s) {
-    const Momentum<dim>& impulse = this->report.hydrodynamic_impulse[s];
-    const auto about_origin = cross<dim>(states[s].center_of_mass, impulse.linear);
     Texts expected = {
         {"step", "7"}, {"time", text_of(this->report.time)}, {"name", states[s].name}};
     expect_vector(expected, "", states[s].center_of_mass);
     expect_vector(expected, "v", states[s].velocity);
     expect_vector(expected, "w", states[s].angular_velocity);
-    expect_vector(expected, "f", Point<dim>(2 * impulse.linear));
-    expect_vector(expected, "t", AngularVector<dim>(2 * (impulse.angular - about_origin)));
+    const auto expect_impulse = [&](const std::string& prefix, const Momentum<dim>& impulse) {
+      const auto about_origin = cross<dim>(states[s].center_of_mass, impulse.linear);
+      expect_vector(expected, prefix + "f", Point<dim>(2 * impulse.linear));
+      expect_vector(expected, prefix + "t",
+                    AngularVector<dim>(2 * (impulse.angular - about_origin)));
+    };
+    expect_impulse("", this->report.hydrodynamic_impulse[s]);
+    expect_impulse("contact_", this->report.contact_impulse[s]);
     EXPECT_EQ(rows[s], expected);
   }
 }
