@@ -32,10 +32,12 @@ ControlVolume<dim> volume_at_side(const MacDomain<dim>& domain, const MacGeometr
   return volume;
 }
 
-/// True if a closed solid that touches the face goes through the side there.
+/// True if a closed solid that touches the face goes through the side there, or through an inflow.
 template <int dim>
 bool any_goes_through(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface,
                       const ControlVolume<dim>& volume, int end) {
+  if (!domain.boundary.side(volume.direction, end).closed())
+    return true;  // fluid comes in there: nothing lies on it
   std::vector<int> solids;
   surface.solids_touching(volume.box, solids);
   return std::any_of(solids.begin(), solids.end(), [&](int solid) {
@@ -50,7 +52,7 @@ template <int dim>
 bool goes_through(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface, int solid,
                   int axis, int end) {
   const TiledGrid<dim>& grid = domain.grid;
-  const double beyond = 0.25 * grid.spacing();
+  const double beyond = 0.1 * grid.spacing();
   const Box<dim> bounds = surface.bounds_of_solid(solid);
   const double lower = grid.lower()[axis];
   return end == 0 ? bounds.min()[axis] < lower - beyond
