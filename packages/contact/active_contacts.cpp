@@ -47,8 +47,10 @@ void ContactProblem<dim>::leave_out_immovable(ImpulseSolver<dim>& solver) {
     const Contact<dim>& contact = candidate.contact;
     if (any_bends({contact.solid, contact.other}) && !system_.joints())
       continue;  // nodes that are held are no candidates
-    if (candidate.target > normal_velocity(motion, contact) && !solver.can_move(contact)) {
-      check_room(contact);
+    const double speed = normal_velocity(motion, contact);
+    if (candidate.target > speed && !solver.can_move(contact)) {
+      if (speed < 0 && (is_given(contact.solid) || is_given(contact.other)))
+        check_room(contact);
       any = candidate.active = true;
     }
   }

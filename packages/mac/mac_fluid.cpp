@@ -303,7 +303,9 @@ void MacFluid<dim>::advect_scalars(Transport<dim>& transport) {
 template <int dim>
 void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
   // Without solids nothing has changed: one field to store, and to extend. All ranks must agree.
-  const bool differs = flow_.prediction != flow_.velocity;
+  // What a source makes of the surface's velocity is not the fluid's own.
+  const bool differs =
+      flow_.prediction != flow_.velocity || (liquid_ && flow_.scalars.sources_push(time));
   const bool has_own =
       liquid_ ? max_all(flow_.domain.grid.comm(), GlobalIndex(differs)) > 0 : differs;
   FaceField<dim> own = has_own ? flow_.prediction : FaceField<dim>();
