@@ -4,9 +4,9 @@
 namespace lockstep {
 
 /// The response of solids in contact, velocities from impulses, which learns from what coupled
-/// solves have answered: a BFGS update of the inverse makes it exact for each such pair, so that a
-/// group of d dofs that touch is known after d solves. It matters where the fluid is most of the
-/// mass, as around light bodies.
+/// solves have answered: a BFGS update of the inverse makes it exact for the last such pair, and
+/// keeps it symmetric and positive definite. It matters where the fluid is most of the mass, as
+/// around light bodies.
 class SecantResponse {
  public:
   /// `first`: symmetric positive definite, with an assembled matrix behind.
