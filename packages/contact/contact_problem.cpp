@@ -192,8 +192,6 @@ double ContactProblem<dim>::target(const Contact<dim>& contact, const SolidMotio
     return std::max(free, -before * restitution);
   if (closing <= least_bounce || normal_velocity >= free - rounding::differences * closing)
     return free;
-  if (bouncing_)
-    bouncing_->insert(bounce_key(contact));
   return std::max(free, (bouncing_ ? -before : closing) * restitution);
 }
 
@@ -253,6 +251,8 @@ void ContactProblem<dim>::add_candidates(const SolidMotion<dim>& motion,
     follow_turns(before, contact);
     Candidate candidate;
     candidate.target = target(contact, motion, before);
+    if (bouncing_ && candidate.target > 0)
+      bouncing_->insert(bounce_key(contact));
     candidate.contact = std::move(contact);
     const int number = static_cast<int>(candidates_.size());
     pairs_[{candidate.contact.solid, candidate.contact.other}].push_back(number);

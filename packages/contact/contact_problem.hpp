@@ -84,8 +84,8 @@ class ContactProblem {
                 const SolidMotion<dim>& before) const;
   /// Names a contact within a step.
   std::size_t bounce_key(const Contact<dim>& contact) const;
-  /// Where the turning of a rigid solid takes a point of it against the normal within the step: to
-  /// the end of its arc, or to the lowest point on the way. Other solids do not turn.
+  /// Returns the place to which the turning of a rigid solid takes a point of it against the normal
+  /// within the step: the end of its arc, or the lowest point on the way. Other solids do not turn.
   Point<dim> turned_place(const SolidMotion<dim>& motion, int solid, const Point<dim>& x,
                           const Point<dim>& normal) const;
   /// Lets the impulse act where turning takes the place in contact, and finds its `bend`: the gap

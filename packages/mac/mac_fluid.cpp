@@ -303,7 +303,7 @@ void MacFluid<dim>::advect_scalars(Transport<dim>& transport) {
 template <int dim>
 void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& surface) {
   // Without solids nothing has changed: one field to store, and to extend. All ranks must agree.
-  // What a source makes of the surface's velocity is not the fluid's own.
+  // A source changes the velocity of the liquid's surface (MacLiquid::move), not the fluid's own.
   const bool differs =
       flow_.prediction != flow_.velocity || (liquid_ && flow_.scalars.sources_push(time));
   const bool has_own =

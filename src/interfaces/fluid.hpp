@@ -107,9 +107,9 @@ struct FluidGeometry {
   RCP<const LinearOperator> pressure_block;
   PressureRegions regions;
   double volume = 0;  ///< volume of the fluid [m^dim], global
-  /// Where closed solids touch walls and each other, so that no pressure is between: a patch has
-  /// the harmonic extension of the pressure around it, and what solids push out there comes out
-  /// around it. Null: nowhere; the same on all ranks.
+  /// The patches in which closed solids touch walls and each other, with no pressure between: a
+  /// patch has the harmonic extension of the pressure around it, and what solids push out there
+  /// comes out around it. Null: there is none; the same on all ranks.
   std::shared_ptr<const HarmonicExtension> contact_patches;
 };
 

@@ -17,8 +17,8 @@ struct Contact {
   bool impact = false;
   Point<dim> normal = Point<dim>::Zero();  ///< unit, out of `other`
   double gap = 0;                          ///< along the normal, negative in an overlap [m]
-  /// What the turning of rigid solids adds to the gap within the step, beside dt times the normal
-  /// velocity at x [m].
+  /// Distance that the turning of rigid solids adds to the gap within the step, beside dt times the
+  /// normal velocity at x [m].
   double bend = 0;
   Point<dim> wall_velocity = Point<dim>::Zero();  ///< if `other` is a wall [m/s]
 

@@ -142,7 +142,8 @@ class PatchFinder {
     return graph;
   }
 
-  /// Where a linear pressure has the value of each node, and that of the ground aside.
+  /// Finds the place of each node at which a linear pressure has its value, and the part that rims
+  /// with a pressure have in it.
   void set_weights(const HarmonicExtension& patches) {
     const std::size_t n_rim = rim_.size() / 2;
     std::vector<double> at_rim(n_rim);
