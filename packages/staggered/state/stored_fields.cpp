@@ -50,7 +50,7 @@ void load_fields(const MacDomain<dim>& domain, const std::vector<StoredField>& f
     for (const int cell : saved.cells)
       for (CellField* component : field.components)
         (*component)[cell] = *value++;
-    domain.halo.fill(field.components);
+    domain.full_halo.fill(field.components);
   }
 }
 
