@@ -1,6 +1,7 @@
 #include "liquid/common/continuation.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace lockstep {
 
@@ -89,20 +90,25 @@ void Continuation<dim>::into_solids(const MacDomain<dim>& domain, const SolidCel
   if (surface_ != solids.state.surface)
     find_layers(domain, solids);
   const TiledGrid<dim>& grid = domain.grid;
+  const double h = grid.spacing();
   std::vector<double> values;
   for (int layer = 1; layer <= n_layers_; ++layer) {
     const std::vector<LayerCell>& cells = layers_[layer - 1];
     values.clear();
     for (const LayerCell& at : cells) {
-      double sum = 0;
-      int n = 0;
+      double least = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < 2 * dim; ++i)
+        if (at.from >> i & 1)
+          least = std::min(least, std::abs(phi[grid.neighbor(at.cell, i / 2, i % 2)]));
+      double sum = 0, weights = 0;
       for (int i = 0; i < 2 * dim; ++i)
         if (at.from >> i & 1) {
           const int other = grid.neighbor(at.cell, i / 2, i % 2);
-          sum += led_to(grid, solids, phi, other, i / 2, i % 2, layer);
-          ++n;
+          const double weight = std::max(0.0, 1 - (std::abs(phi[other]) - least) / (0.5 * h));
+          sum += weight * led_to(grid, solids, phi, other, i / 2, i % 2, layer);
+          weights += weight;
         }
-      values.push_back(std::clamp(sum / n, -cut_off, cut_off));
+      values.push_back(std::clamp(sum / weights, -cut_off, cut_off));
     }
     for (std::size_t i = 0; i < cells.size(); ++i)
       phi[cells[i].cell] = values[i];

@@ -10,7 +10,9 @@ namespace lockstep {
 inline constexpr int depth_in_solids = 4;
 
 /// Extrapolates phi linearly into solids over some cells: layer by layer, a cell takes the mean of
-/// the extrapolations from its neighbours along the axes that are seen from the fluid.
+/// the extrapolations from those of its neighbours along the axes, seen from the fluid, that are
+/// nearest to the interface. Farther ones, deep under an overhang, say how far the interface is in
+/// sight, not how far its plane is.
 template <int dim>
 class Continuation {
  public:

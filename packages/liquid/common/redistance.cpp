@@ -126,7 +126,7 @@ class March {
     for (int i = 0; i < 2 * dim; ++i) {
       const int other = solids_.seen_neighbor(grid, cell, i / 2, i % 2);
       const bool is_other_side = other >= 0 && differ(phi_[cell], phi_[other]);
-      is_near = is_near || is_other_side;
+      is_near = is_near || is_other_side || meets_solid(cell, i / 2, i % 2);
       ways_[place][i] =
           other >= 0 && !is_other_side && distance_.has(other) ? distance_.place(other) : 0;
     }
@@ -139,6 +139,27 @@ class March {
                                     : std::abs(phi_[cell]);
     stays_[place] = 1;
     wait(place);
+  }
+
+  /// True if a solid cell is ahead and the interface passes beside it, so that it goes on ahead of
+  /// the cell to where it meets the solid, and no neighbour shows it. Where interface and solid
+  /// meet at a small angle, that is to be seen some cells aside.
+  bool meets_solid(int cell, int axis, int side, int n_aside = 3) const {
+    const TiledGrid<dim>& grid = domain_.grid;
+    const int ahead = grid.neighbor(cell, axis, side);
+    if (ahead < 0 || solids_.state.cells[ahead] != CellState::solid ||
+        std::abs(phi_[cell]) >= grid.spacing())
+      return false;
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int beside = i / 2 == axis ? -1 : solids_.seen_neighbor(grid, cell, i / 2, i % 2);
+      if (beside < 0 || differ(phi_[cell], phi_[beside]))
+        continue;
+      const int beyond = solids_.seen_neighbor(grid, beside, axis, side);
+      if (beyond >= 0 ? differ(phi_[beside], phi_[beyond])
+                      : n_aside > 1 && meets_solid(beside, axis, side, n_aside - 1))
+        return true;
+    }
+    return false;
   }
 
   /// The interface lies between the cell and an open side, so that no neighbour shows it.
@@ -215,6 +236,8 @@ template <int dim>
 void redistance(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
                 const std::vector<char>& tiles, double cut_off, CellField& phi,
                 NearCells near_cells) {
+  if (solids.has_solids(true))
+    domain.full_halo.fill(phi);  // March::meets_solid looks some cells aside
   March<dim> march(domain, solids, tiles, cut_off, phi);
   march.set_near_cells(near_cells);
   do
