@@ -60,7 +60,9 @@ std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
                              solids.solids().size(), n_prescribed, n_shells, solids.n_unknowns()));
   const GlobalIndex n_coupled =
       sum_all(comm, static_cast<GlobalIndex>(fluid.coupled_volumes().size()));
-  line("coupling", fmt::format("{}, {} mixed faces", components.coupling->name(), n_coupled));
+  const std::string& why = components.coupling_note;
+  line("coupling", fmt::format("{}{}, {} mixed faces", components.coupling->name(),
+                               why.empty() ? "" : fmt::format(" (automatic: {})", why), n_coupled));
   line("S1, S2", solids.has_unknowns()
                      ? "coupled solves of Eq. 16 by " + components.strategy->name()
                      : "no dynamic solids: one Poisson CG per step, no S1");

@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/xml_text.hpp"
+#include "coupling/automatic_coupling.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/parameter_rule.hpp"
 #include "parameters/shape_sizes.hpp"
@@ -213,6 +214,42 @@ std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries
   return jointed_solids(registries, scene, std::move(models), setting);
 }
 
+constexpr const char* automatic = "automatic";
+
+template <int dim>
+void declare_coupling(ParameterList& scene, const Registries<dim>& registries) {
+  ParameterList list;
+  declare(list, "Correct Buoyancy", true, "As for the coupling that is chosen.");
+  auto couplings = registries.couplings.schemas();
+  couplings.push_back(
+      {automatic,
+       "'flux' if every closed solid is rigid, at least two cells thick and not far lighter than "
+       "the fluid, else 'mixed face'; "
+       "--explain says which and why.",
+       list});
+  declare_typed_sublist(scene, "Coupling",
+                        "Coupling of fluid and solids: their exchange of momentum.", couplings,
+                        automatic);
+}
+
+/// Makes the coupling of a scene. `note` becomes the reason of an automatic choice.
+template <int dim>
+std::unique_ptr<Coupling<dim>> build_coupling(const Registries<dim>& registries,
+                                              const ParameterList& list,
+                                              const SolidSystem<dim>& solids,
+                                              const FluidDiscretization<dim>& fluid,
+                                              std::string& note) {
+  const auto type = list.get<std::string>("Type");
+  if (type != automatic)
+    return registries.couplings.create(type, list);
+  const CouplingChoice choice = automatic_coupling(*solids.snapshot(), fluid.smallest_length(),
+                                                   fluid.density(fluid.bounds().center()));
+  note = choice.reason;
+  ParameterList chosen = registries.couplings.valid_parameters(choice.type);
+  chosen.set("Correct Buoyancy", list.get<bool>("Correct Buoyancy"));
+  return registries.couplings.create(choice.type, chosen);
+}
+
 }  // namespace
 
 template <int dim>
@@ -227,9 +264,7 @@ ParameterList scene_parameters(const Registries<dim>& registries, const std::str
   declare_typed_sublist(scene, "Fluid", "The fluid.", registries.fluids.schemas(), usual_fluid);
   declare_named_sublists(scene, "Solids", "One sublist a body, under a name of its own.",
                          registries.solids.schemas());
-  declare_typed_sublist(scene, "Coupling",
-                        "Coupling of fluid and solids: their exchange of momentum.",
-                        registries.couplings.schemas(), "mixed face");
+  declare_coupling(scene, registries);
   declare_joints(scene, registries);
   auto contacts = registries.contacts.schemas();
   const std::string usual_contact = contacts.empty() ? "none" : contacts.front().type;
@@ -315,7 +350,8 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
                                         fluid.density(bounds.center())};
   components.solids =
       build_solids<dim>(registries, scene, scene_file, solid_setting, bounds.sizes().maxCoeff());
-  components.coupling = registries.couplings.create(type_of("Coupling"), scene.sublist("Coupling"));
+  components.coupling = build_coupling(registries, scene.sublist("Coupling"), *components.solids,
+                                       fluid, components.coupling_note);
   const ParameterList& strategy = scene.sublist("Solver").sublist("Strategy");
   components.strategy = registries.strategies.create(strategy.get<std::string>("Type"), strategy);
   const auto* joints = std::as_const(*components.solids).joints();

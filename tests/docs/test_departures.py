@@ -1,7 +1,7 @@
 """Defaults that docs/method.md names stand in docs/parameters with that value. Usage: test_departures.py ROOT
 
 The section "Where the defaults depart from the paper" writes them as `List/Parameter` = `value`; a list of a plug-in that many
-may have, as "Solids/deformable body", is named by its type. `List/Type` is the plug-in that a scene has which names none.
+may have, as "Solids/deformable body", is named by its type, and so is a coupling. `List/Type` is the plug-in that a scene has which names none.
 """
 import re
 import sys
@@ -39,8 +39,8 @@ def documented():
         if is_default:
             found.setdefault(f"{place}/Type", set()).add(name)
             prefix = place
-        elif place == "Solids":
-            prefix = f"Solids/{name}"
+        elif place in ("Solids", "Coupling"):
+            prefix = f"{place}/{name}"
         else:
             continue  # one that a scene must ask for has no part in the defaults
         for path, default in parameters_of(PARAMETERS / page, prefix):

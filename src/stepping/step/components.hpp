@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <string>
 
 #include "coupling/solid_system.hpp"
 #include "interfaces/contact.hpp"
@@ -17,6 +18,7 @@ struct Components {
   std::unique_ptr<FluidDiscretization<dim>> fluid;
   std::unique_ptr<SolidSystem<dim>> solids;
   std::unique_ptr<Coupling<dim>> coupling;
+  std::string coupling_note;  ///< reason of a coupling that the scene left to the program
   std::unique_ptr<SolverStrategy> strategy;
   std::unique_ptr<ContactModel<dim>> contact;  ///< null: solids do not touch
 };

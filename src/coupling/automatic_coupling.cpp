@@ -1,0 +1,65 @@
+#include "coupling/automatic_coupling.hpp"
+
+#include <fmt/format.h>
+
+namespace lockstep {
+
+namespace {
+/// Thickness of closed solids, in cells, from which fluxes through cut cells tell its two sides
+/// apart: between centres of cells on both sides lies one that is inside.
+constexpr double least_thickness = 2;
+/// Density of a solid over the fluid's from which on fluxes serve: nothing is lumped on a body, so
+/// that contacts of far lighter ones gain energy with round-off (docs/method.md, "Contact").
+constexpr double least_density = 1e-4;
+
+template <int dim>
+double area(const SurfaceMesh<dim>& mesh) {
+  double sum = 0;
+  for (const auto& simplex : mesh.simplices) {
+    std::array<Point<dim>, dim> corners;
+    for (int k = 0; k < dim; ++k)
+      corners[k] = mesh.vertices[simplex[k]];
+    sum += area_vector<dim>(corners).norm();
+  }
+  return sum;
+}
+
+/// Thickness of a plate with this ratio of volume and surface, of a body as compact as a ball its
+/// smallest extent [m].
+template <int dim>
+double thickness(const SurfaceSnapshot<dim>& surface, int solid) {
+  const SurfaceMesh<dim> mesh = surface.mesh_of_solid(solid);
+  const double of_plate = 2 * volume_properties<dim>(mesh).measure / area<dim>(mesh);
+  const double extent = surface.bounds_of_solid(solid).sizes().minCoeff();
+  constexpr double nearly = 0.8;  // part of a ball's or a cube's, whose ratio is extent / (2 dim)
+  return of_plate >= nearly * extent / dim ? extent : of_plate;
+}
+}  // namespace
+
+template <int dim>
+CouplingChoice automatic_coupling(const SurfaceSnapshot<dim>& surface, double spacing,
+                                  double density) {
+  const std::string whole = "mixed face";
+  bool any_closed = false;
+  for (std::size_t s = 0; s < surface.solids().size(); ++s) {
+    const SolidDescription& solid = surface.solids()[s];
+    if (!solid.closed)
+      continue;
+    any_closed = true;
+    if (!solid.rigid)
+      return {whole, fmt::format("\"{}\" deforms", solid.name)};
+    if (!solid.prescribed && solid.density < least_density * density)
+      return {whole, fmt::format("\"{}\" is {:.2g} times as dense as the fluid", solid.name,
+                                 solid.density / density)};
+    const double cells = thickness(surface, static_cast<int>(s)) / spacing;
+    if (cells < least_thickness)
+      return {whole, fmt::format("\"{}\" is {:.2g} cells thick", solid.name, cells)};
+  }
+  return any_closed ? CouplingChoice{"flux", "closed solids are rigid, and not thin"}
+                    : CouplingChoice{whole, "no solid is closed"};
+}
+
+template CouplingChoice automatic_coupling<2>(const SurfaceSnapshot<2>&, double, double);
+template CouplingChoice automatic_coupling<3>(const SurfaceSnapshot<3>&, double, double);
+
+}  // namespace lockstep
