@@ -55,7 +55,7 @@ class Boat(unittest.TestCase):
         self.assertLess((run.of("Light ball", "y", begin, end) - boat).max(), .1)  # in it
 
     def test_sinks_with_the_heavy_ball_alone(self):
-        run = Run("floating-boat", self.CELLS, end=2.5)
+        run = Run("floating-boat", self.CELLS, end=3)
         self.assert_is_afloat(run, .4, .6)
         self.assertLess(run.of("Light ball", "y", .7, 1.5).min(), self.LEVEL - self.RADIUS)  # wholly under water
         self.assertLess(run.of("Boat", "y", 2).max(), .3)
