@@ -174,6 +174,30 @@ class Faults(unittest.TestCase):
                 result = simulate(folder, "--restart", newest_checkpoint(folder), "--steps", 5, ranks=ranks)
                 self.assertEqual(result.returncode, 0, result.stderr)
 
+    def test_a_table_that_is_removed(self):
+        """Rows that nobody would ever see are told of."""
+        with tempfile.TemporaryDirectory() as folder:
+            history = Path(folder) / "output" / "history.csv"
+            with started(folder, "--set", "Time/End=1e6") as process:
+                wait_for(lambda: history.exists() and len(read_table(history)) > 2, process)
+                history.unlink()
+                output, _ = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 4, output)
+                self.assertIn("history.csv' was removed while the run wrote to it", output)
+
+    def test_a_folder_whose_name_is_no_text(self):
+        """File names are bytes; what a page or a table says of them must be text all the same."""
+        with tempfile.TemporaryDirectory() as folder:
+            output = os.fsencode(folder) + b"/r\xe9sultat"
+            (Path(folder) / "scene.xml").write_text(SCENE)
+            for more in ([], ["--restart", output + b"/checkpoint-000002.h5"]):
+                steps = "4" if more else "2"
+                result = subprocess.run([SIMULATE, f"{folder}/scene.xml", "--output", output, "--steps", steps, *more],
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
+                self.assertEqual(result.returncode, 0, result.stderr)
+            for name in (b"/summary.json", b"/frames.xmf", b"/used-parameters.xml", b"/history.csv"):
+                Path(os.fsdecode(output + name)).read_text("utf-8")
+
     def test_a_limit_of_the_size_of_files(self):
         """It is told from the first file on."""
         for size in (16, 4096, 65536):
