@@ -411,7 +411,7 @@ void Simulation<dim>::record_ending(const std::string& status,
     return;
   try {
     write_file_atomically(options_.output_directory + "/summary.json",
-                          unfinished_summary(status, message, header_).dump(2) + "\n");
+                          summary_text(unfinished_summary(status, message, header_)));
   } catch (const std::exception&) {
     // The failure has its own message; a full disk may hold no other.
   }
