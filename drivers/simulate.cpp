@@ -69,7 +69,7 @@ int simulate(Document document, const Arguments& arguments, const Communicator& 
   }
   Simulation<dim> simulation(registries, document.list, arguments.run, comm, log);
   if (arguments.validate || arguments.explain) {
-    log.normal("{}: valid.\n{}", arguments.run.scene_file, simulation.explain());
+    log.normal("{}: valid.\n{}", arguments.run.scene_file, simulation.explain(arguments.explain));
     return 0;
   }
 
@@ -122,7 +122,8 @@ int run(int argc, char** argv, const Communicator& comm) {
   const CLI::Option* restart =
       app.add_option("--restart", arguments.run.restart_file, "continue from this checkpoint");
   app.add_flag("--validate", arguments.validate, "check the scene and build it, without running");
-  app.add_flag("--explain", arguments.explain, "print what is active, why, and its cost");
+  app.add_flag("--explain", arguments.explain,
+               "print what is understood, its cost, and what looks like a mistake");
   app.add_flag("--parameters", arguments.parameters, "print all parameters with documentation");
   app.add_option("--format", arguments.format, "of --parameters: text or json")
       ->check(CLI::IsMember({"text", "json"}));

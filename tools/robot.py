@@ -71,6 +71,13 @@ def numbers(text, n, where):
     return values
 
 
+def sizes(text, n, where):
+    values = numbers(text, n, where)
+    if min(values) <= 0:
+        raise RobotError(f'{where} is "{text}"; sizes are greater than 0.')
+    return values
+
+
 def pose(element, where):
     """Pose of the element's <origin>: turned by roll, pitch and yaw about the axes of space, then shifted."""
     origin = element.find("origin")
@@ -112,12 +119,12 @@ def read_shape(element, where, robot_file, packages):
         raise RobotError(f"{where} has no geometry.")
     shape, place = geometry[0], pose(element, where)
     if shape.tag == "box":
-        return Shape("box", place, tuple(numbers(shape.get("size"), 3, f"{where}: size")))
+        return Shape("box", place, tuple(sizes(shape.get("size"), 3, f"{where}: size")))
     if shape.tag == "sphere":
-        return Shape("sphere", place, tuple(numbers(shape.get("radius"), 1, f"{where}: radius")))
+        return Shape("sphere", place, tuple(sizes(shape.get("radius"), 1, f"{where}: radius")))
     if shape.tag == "cylinder":
-        return Shape("cylinder", place, (*numbers(shape.get("radius"), 1, f"{where}: radius"),
-                                         *numbers(shape.get("length"), 1, f"{where}: length")))
+        return Shape("cylinder", place, (*sizes(shape.get("radius"), 1, f"{where}: radius"),
+                                         *sizes(shape.get("length"), 1, f"{where}: length")))
     if shape.tag != "mesh":
         raise RobotError(f"{where}: the shape <{shape.tag}> is not known; box, sphere, cylinder and mesh are.")
     name = shape.get("filename", "")

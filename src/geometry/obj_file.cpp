@@ -43,11 +43,13 @@ void check_records(const std::string& file, MeshNames& names) {
       for (std::size_t k = 1; k < words.size(); ++k)
         lines.number(words[k]);
       names.vertices.push_back(++n_vertices);
+      check_mesh_entries(lines.where(), names.vertices.size());
     } else if (words[0] == "f" || words[0] == "l") {
       const std::size_t n_needed = words[0] == "f" ? 3 : 2;
       check_input(words.size() > n_needed, "{}: a record '{}' needs at least {} vertices.",
                   lines.where(), words[0], n_needed);
       add_lines<dim>(words[0], words.size() - 1, lines.line(), names.simplex_lines);
+      check_mesh_entries(lines.where(), names.simplex_lines.size());
       for (std::size_t k = 1; k < words.size(); ++k) {
         const long v = vertex_of(words[k], lines);
         check_input(v > 0 || (v < 0 && v >= -n_vertices),

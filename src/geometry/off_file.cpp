@@ -47,7 +47,8 @@ SurfaceMesh<dim> read_off(const std::string& file, MeshNames& names) {
   const long n_vertices = lines.integer(words[0]), n_faces = lines.integer(words[1]);
   check_input(n_vertices >= 0 && n_faces >= 0, "{}: {} vertices and {} faces cannot be.",
               lines.where(), n_vertices, n_faces);
-  lines.check_count(n_vertices + n_faces);
+  lines.check_count(n_vertices);
+  lines.check_count(n_faces);
 
   SurfaceMesh<dim> mesh;
   for (long v = 0; v < n_vertices; ++v) {

@@ -88,6 +88,7 @@ class AsciiReader {
       expect({"endloop"});
       expect({"endfacet"});
       merger.add_triangle(corners);
+      check_mesh_entries(lines_.where(), names_.simplex_lines.size());
     }
   }
 
@@ -124,8 +125,10 @@ SurfaceMesh<3> read_stl(const std::string& file, MeshNames& names) {
   std::uint32_t n_facets = 0;
   std::memcpy(&n_facets, start + header_size, sizeof n_facets);
   // Binary files may begin with "solid" too, so the size decides first.
-  if (size == header_size + count_size + facet_size * std::uintmax_t{n_facets})
+  if (size == header_size + count_size + facet_size * std::uintmax_t{n_facets}) {
+    check_mesh_entries(file, n_facets);
     return read_binary(file, n_facets, names);
+  }
   if (std::strncmp(start, "solid", 5) == 0)
     return AsciiReader(file, names).read();
   check_input(

@@ -15,6 +15,16 @@
 
 namespace lockstep {
 
+/// Throws InputError if a mesh file has so many vertices or simplices that a body of them would
+/// take all memory; `where`: of the file.
+inline void check_mesh_entries(const std::string& where, std::size_t n) {
+  constexpr std::size_t most = 10000000;
+  check_input(n <= most,
+              "{}: the mesh has {} vertices or elements, or more; at most {} are accepted: make it "
+              "coarser.",
+              where, n, most);
+}
+
 /// The lines of a text file as words, with the line number for messages. Internal to the readers.
 class TextLines {
  public:
@@ -43,9 +53,10 @@ class TextLines {
 
   int line() const { return number_; }
 
-  /// Throws InputError if the file announces more entries than it has bytes.
+  /// Throws InputError if the file announces more entries than it has bytes, or than are accepted.
   void check_count(long n) const {
     check_input(n >= 0, "{}: a count is negative: {}.", where(), n);
+    check_mesh_entries(where(), static_cast<std::size_t>(n));
     check_input(static_cast<std::uintmax_t>(n) <= size_,
                 "{}: {} entries are announced, but the file has {} bytes; it is damaged.", where(),
                 n, size_);

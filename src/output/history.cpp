@@ -1,6 +1,7 @@
 #include "output/history.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -155,6 +156,11 @@ void HistoryTable::append_rows(const std::vector<std::vector<HistoryValue>>& row
 }
 
 void HistoryTable::append_text(const std::string& text) {
+  struct stat status {};
+  check_output(fstat(descriptor_, &status) == 0 && status.st_nlink > 0,
+               "'{}' was removed while the run wrote to it: leave the files of a run until it has "
+               "ended, and restart from its last checkpoint.",
+               path_);
   const off_t end = lseek(descriptor_, 0, SEEK_END);
   const int error = end < 0 ? errno : write_fully(descriptor_, text);
   if (error == 0)

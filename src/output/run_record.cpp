@@ -44,10 +44,14 @@ void record_input(const Communicator& comm, const std::string& directory,
   });
 }
 
+std::string summary_text(const nlohmann::ordered_json& summary) {
+  using ErrorHandler = nlohmann::ordered_json::error_handler_t;
+  return summary.dump(2, ' ', false, ErrorHandler::replace) + "\n";
+}
+
 void write_summary(const Communicator& comm, const std::string& directory,
                    const nlohmann::ordered_json& summary) {
-  on_root(comm,
-          [&] { write_file_atomically(directory + "/summary.json", summary.dump(2) + "\n"); });
+  on_root(comm, [&] { write_file_atomically(directory + "/summary.json", summary_text(summary)); });
 }
 
 }  // namespace lockstep

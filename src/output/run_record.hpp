@@ -18,6 +18,9 @@ void create_output_directory(const Communicator& comm, const std::string& direct
 void record_input(const Communicator& comm, const std::string& directory,
                   const std::string& input_path, const std::string& used_parameters);
 
+/// Text of summary.json, in which bytes of paths that are no UTF-8 are replaced. Local.
+std::string summary_text(const nlohmann::ordered_json& summary);
+
 /// DIRECTORY/summary.json. Throws OutputError.
 void write_summary(const Communicator& comm, const std::string& directory,
                    const nlohmann::ordered_json& summary);

@@ -1,8 +1,11 @@
 #include "parameters/formula.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <ostream>
 
 #include "base/errors.hpp"
+#include "parameters/mistakes.hpp"
 
 namespace lockstep {
 
@@ -24,6 +27,12 @@ ValueType final_type(const ParameterEntry& entry) {
   return entry.isType<Formula>() ? Teuchos::getValue<Formula>(entry).type : value_type(entry);
 }
 
+bool uses_mistake(const std::string& formula, const Variables& variables) {
+  return std::any_of(variables.begin(), variables.end(), [&](const auto& variable) {
+    return std::isnan(variable.second) && formula.find(variable.first) != std::string::npos;
+  });
+}
+
 void evaluate_formulas(ParameterList& list, const Variables& variables, const Source& source,
                        const std::string& path) {
   for (const auto& [name, entry] : entries(list)) {
@@ -31,15 +40,19 @@ void evaluate_formulas(ParameterList& list, const Variables& variables, const So
       evaluate_formulas(list.sublist(name), variables, source, join_path(path, name));
     } else if (entry.isType<Formula>()) {
       const Formula formula = Teuchos::getValue<Formula>(entry);
+      if (uses_mistake(formula.text, variables))
+        continue;
       const std::string where =
           fmt::format("{}: {}, \"{}\"", source.place(join_path(path, name)), in_list(path), name);
       try {
         list.setEntry(name, parse_value(formula.type, substitute(formula.text, variables, where)));
       } catch (const InputError& error) {
         const std::string message = error.what();
-        throw InputError(message.rfind(where, 0) == 0
-                             ? message
-                             : fmt::format("{} = \"{}\" {}.", where, formula.text, message));
+        const bool is_whole = message.rfind(where, 0) == 0;
+        list.setEntry(
+            name, ParameterEntry(Mistake{
+                      {is_whole ? message
+                                : fmt::format("{} = \"{}\" {}.", where, formula.text, message)}}));
       }
     }
   }

@@ -21,12 +21,16 @@ std::ostream& operator<<(std::ostream& out, const Formula& formula);
 /// True if a value of this type written like this is a formula. Brackets in strings are text.
 bool is_formula(ValueType type, const std::string& text);
 
+/// True if a formula names a variable that is nan, as its own value is a `Mistake`.
+bool uses_mistake(const std::string& formula, const Variables& variables);
+
 /// The type that an entry has, or will have once its formula is evaluated.
 ValueType final_type(const ParameterEntry& entry);
 
 /// Puts values in the place of all formulas in `list`, which stands at `path`, and in its sublists.
-/// Throws InputError with the place for bad syntax, unknown names, and results that are not finite
-/// or, where an int is asked for, not whole.
+/// One with bad syntax, unknown names, or a result that is not finite or, where an int is asked
+/// for, not whole becomes a `Mistake` with its place, which `validate` tells of. Formulas
+/// that use a mistake are left.
 void evaluate_formulas(ParameterList& list, const Variables& variables, const Source& source,
                        const std::string& path = "");
 

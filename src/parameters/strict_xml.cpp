@@ -3,6 +3,7 @@
 #include <expat.h>
 
 #include <algorithm>
+#include <list>
 #include <memory>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "base/regular_file.hpp"
 #include "base/shortened.hpp"
 #include "parameters/formula.hpp"
+#include "parameters/mistakes.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 
@@ -20,10 +22,13 @@ namespace {
 /// Functions that walk through lists recurse into nested ones, so that the depth is bounded.
 constexpr std::size_t most_nested = 100;
 
+/// Names go into messages, tables and files.
+constexpr std::size_t longest_name = 1000;
+
 using Attributes = std::map<std::string, std::string>;
 
-/// Builds the list while expat reports the elements. A callback must not throw through expat: the
-/// first failure is kept and stops the parser.
+/// Builds the list while expat reports the elements. A callback must not throw through expat:
+/// mistakes are noted, and thrown at the end.
 class Reader {
  public:
   Reader(const std::string& name, FormulaPolicy formulas)
@@ -42,10 +47,10 @@ class Reader {
     check_input(!trimmed(text).empty(), "{} is empty; a parameter file holds one <ParameterList>.",
                 file);
     const auto status = XML_Parse(parser_.get(), text.data(), static_cast<int>(text.size()), 1);
-    if (!failure_.empty())
-      throw InputError(failure_);
     if (status != XML_STATUS_OK)
-      throw InputError(malformed());
+      note(malformed());
+    if (is_broken_)
+      mistakes_.throw_all();
     return std::move(document_);
   }
 
@@ -83,14 +88,17 @@ class Reader {
 
   template <typename Work>
   void guard(Work work) {
-    if (!failure_.empty())
-      return;
     try {
       work();
     } catch (const std::exception& error) {
-      failure_ = fmt::format("{}: {}", here(), error.what());
-      XML_StopParser(parser_.get(), XML_FALSE);
+      note(fmt::format("{}: {}", here(), error.what()));
     }
+  }
+
+  /// A mistake for which the rest of the document is of no use, but to look for more of them.
+  void note(const std::string& message) {
+    mistakes_.add(message);
+    is_broken_ = true;
   }
 
   int line() const { return static_cast<int>(XML_GetCurrentLineNumber(parser_.get())); }
@@ -111,15 +119,29 @@ class Reader {
   }
 
   void start(const std::string& element, const Attributes& attributes) {
-    check_input(!open_parameter_, "a <Parameter> holds nothing; end it with \"/>\".");
+    const bool is_parameter = element == "Parameter" && !open_.empty();
+    const bool is_within_parameter = open_parameter_;
+    const std::size_t n_open = open_.size();
+    if (is_parameter) {
+      open_parameter_ = true;
+      parameter_line_ = line();
+    }
+    guard([&] {
+      check_input(!is_within_parameter, "a <Parameter> holds nothing; end it with \"/>\".");
+      if (n_open <= most_nested)  // deeper ones have been told of
+        start_element(element, attributes);
+    });
+    if (!is_parameter && open_.size() == n_open)  // a dropped list may hold mistakes, too
+      open_.push_back({&dropped_.emplace_back(), n_open == 0 ? "" : open_.back().path, line()});
+  }
+
+  void start_element(const std::string& element, const Attributes& attributes) {
     if (element == "ParameterList") {
       start_list(attributes);
     } else if (open_.empty()) {
       throw InputError(fmt::format("the file must hold one <ParameterList>, not <{}>.", element));
     } else if (element == "Parameter") {
       add_parameter(attributes);
-      open_parameter_ = true;
-      parameter_line_ = line();
     } else {
       const std::string nearest = nearest_name(element, {"Parameter", "ParameterList"});
       throw InputError(fmt::format("{}, <{}> is not an element of a parameter file.{}",
@@ -129,7 +151,7 @@ class Reader {
   }
 
   void end(const std::string& element) {
-    if (element == "Parameter") {
+    if (element == "Parameter" && open_parameter_) {
       open_parameter_ = false;
     } else {
       open_.pop_back();
@@ -156,23 +178,33 @@ class Reader {
     const std::string name = attributes.count("name") ? attributes.at("name") : "";
     check_attributes("Parameter", attributes, {"name", "type", "value"},
                      {"docString", "id", "isDefault", "isUsed"});
-    const std::string& type_text = attributes.at("type");
-    const auto type = value_type(type_text);
-    const std::string list = in_list(open_.back().path);
-    check_input(type.has_value(), "{}, \"{}\" has the unknown type \"{}\"; types are {}.", list,
-                name, type_text, known_type_names());
     claim("Parameter", name);
     try {
-      const std::string& text = attributes.at("value");
-      const bool later = formulas_ == FormulaPolicy::kept && is_formula(*type, text);
-      ParameterEntry entry =
-          later ? ParameterEntry(Formula{*type, text}) : parse_value(*type, text);
+      ParameterEntry entry = value_of(attributes);
       if (attributes.count("docString"))
         entry.setDocString(attributes.at("docString"));
       open_.back().list->setEntry(name, entry);
     } catch (const InputError& error) {
-      throw InputError(
-          fmt::format("{}, \"{}\" {} (type \"{}\").", list, name, error.what(), type_text));
+      const std::string message =
+          fmt::format("{}: {}, \"{}\" {}.", here(), in_list(open_.back().path), name, error.what());
+      mistakes_.add(message);
+      is_broken_ = is_broken_ || formulas_ == FormulaPolicy::refused;
+      open_.back().list->setEntry(name, ParameterEntry(Mistake{{message}}));
+    }
+  }
+
+  /// Throws InputError with the predicate of a sentence.
+  ParameterEntry value_of(const Attributes& attributes) const {
+    const std::string &type_text = attributes.at("type"), &text = attributes.at("value");
+    const auto type = value_type(type_text);
+    check_input(type.has_value(), "has the unknown type \"{}\"; types are {}", shortened(type_text),
+                known_type_names());
+    if (formulas_ == FormulaPolicy::kept && is_formula(*type, text))
+      return ParameterEntry(Formula{*type, text});
+    try {
+      return parse_value(*type, text);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{} (type \"{}\")", error.what(), type_text));
     }
   }
 
@@ -183,7 +215,7 @@ class Reader {
     known.insert(known.end(), others.begin(), others.end());
     const auto name = attributes.find("name");
     const std::string which =
-        name == attributes.end() ? "" : fmt::format(" of \"{}\"", name->second);
+        name == attributes.end() ? "" : fmt::format(" of \"{}\"", shortened(name->second));
     for (const auto& [key, value] : attributes) {
       if (std::find(known.begin(), known.end(), key) != known.end())
         continue;
@@ -202,6 +234,9 @@ class Reader {
   std::string claim(const std::string& element, const std::string& name) {
     const OpenList& open = open_.back();
     check_input(!trimmed(name).empty(), "the <{}> has an empty name.", element);
+    check_input(name.size() <= longest_name,
+                "{}, the name \"{}\" has {} characters; at most {} are accepted: shorten it.",
+                in_list(open.path), shortened(name), name.size(), longest_name);
     const std::string path = join_path(open.path, name);
     check_input(!open.list->isParameter(name),
                 "{}, \"{}\" is given twice, first in {}. Remove one of the two.",
@@ -216,7 +251,9 @@ class Reader {
   std::vector<OpenList> open_;
   bool open_parameter_ = false;
   int parameter_line_ = 0;
-  std::string failure_;
+  std::list<ParameterList> dropped_;  ///< lists that stand where they must not
+  Mistakes mistakes_;
+  bool is_broken_ = false;
 };
 
 /// Reads all bytes of the file; `failure` gets the reason if it cannot be read.

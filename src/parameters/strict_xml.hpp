@@ -12,8 +12,10 @@ enum class FormulaPolicy { refused, kept };
 
 /// Reads a Teuchos-style XML parameter list strictly. Collective: rank 0 reads the file, every rank
 /// parses the same bytes, so all ranks return the same document or throw the same InputError with
-/// file and line: malformed XML, elements, attributes or types that do not exist, values that are
-/// not entirely of their type, nan and inf, names given twice in one list, text between elements.
+/// the file and the lines of all mistakes: malformed XML, elements, attributes or types that do not
+/// exist, values that are not entirely of their type, nan and inf, names given twice in one list,
+/// text between elements. With FormulaPolicy::kept values that are wrong stay in the list as
+/// `Mistake`s, so that `validate` can tell of them together with its own.
 Document read_xml(const std::string& file, const Communicator& comm,
                   FormulaPolicy formulas = FormulaPolicy::refused);
 

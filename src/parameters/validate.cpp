@@ -5,6 +5,8 @@
 #include "base/errors.hpp"
 #include "base/shortened.hpp"
 #include "parameters/former_names.hpp"
+#include "parameters/formula.hpp"
+#include "parameters/mistakes.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 
@@ -31,31 +33,53 @@ class Validator {
  public:
   explicit Validator(const Source& source) : source_(source) {}
 
-  void check_list(ParameterList& given, const ParameterList& valid, const std::string& path) const {
+  void check_list(ParameterList& given, const ParameterList& valid, const std::string& path) {
     for (const auto& [name, entry] : entries(given)) {
-      const ParameterEntry* valid_entry = valid.getEntryPtr(name);
-      if (!valid_entry) {
-        throw InputError(unknown_name(source_.place(join_path(path, name)), path, name, valid));
-      }
-      check_entry(entry, *valid_entry, name, path);
-      given.getEntryPtr(name)->setDocString(valid_entry->docString());
+      collect(path, name, [&, &name = name, &entry = entry] {
+        check_readable(entry);
+        const ParameterEntry* valid_entry = valid.getEntryPtr(name);
+        if (!valid_entry)
+          throw InputError(unknown_name(source_.place(join_path(path, name)), path, name, valid));
+        given.getEntryPtr(name)->setDocString(valid_entry->docString());
+        check_entry(entry, *valid_entry, name, path);
+      });
     }
     for (const auto& [name, valid_entry] : entries(valid)) {
-      if (!given.isParameter(name))
-        fill_in(given, valid_entry, name, path);
-      if (given.isSublist(name))
-        check_sublist(given.sublist(name), valid_entry, name, path);
+      collect(path, name, [&, &name = name, &valid_entry = valid_entry] {
+        if (!given.isParameter(name))
+          fill_in(given, valid_entry, name, path);
+        if (given.isSublist(name) && valid_entry.isList())
+          check_sublist(given.sublist(name), valid_entry, name, path);
+      });
     }
   }
 
+  const Mistakes& mistakes() const { return mistakes_; }
+
  private:
+  /// One message a place and name: copies of a solid share the place.
+  template <typename Function>
+  void collect(const std::string& path, const std::string& name, const Function& f) {
+    mistakes_.collect(f, source_.place(join_path(path, name)) + "/" + name);
+  }
+
+  /// Values of a free list need only be readable.
+  void check_free_list(const ParameterList& given, const std::string& path) {
+    for (const auto& [name, entry] : entries(given)) {
+      if (entry.isList())
+        check_free_list(given.sublist(name), join_path(path, name));
+      else
+        collect(path, name, [&entry = entry] { check_readable(entry); });
+    }
+  }
+
   std::string subject(const std::string& path, const std::string& name) const {
     return fmt::format("{}: {}, \"{}\"", source_.place(join_path(path, name)), in_list(path), name);
   }
 
   void check_entry(const ParameterEntry& entry, const ParameterEntry& valid,
                    const std::string& name, const std::string& path) const {
-    const ValueType type = value_type(entry), wanted = value_type(valid);
+    const ValueType type = final_type(entry), wanted = value_type(valid);
     check_input(entry.isList() || !valid.isList(),
                 "{} must be a list, <ParameterList name=\"{}\">, not a parameter.",
                 subject(path, name), name);
@@ -66,8 +90,10 @@ class Validator {
                 type == ValueType::integer && wanted == ValueType::real
                     ? fmt::format(" value=\"{}\"", value_text(entry))
                     : "");
+    if (entry.isList() || entry.isType<Formula>())  // a formula of a constant that is a mistake
+      return;
     const std::string violation = value_rule(valid).violation(entry);
-    check_input(entry.isList() || violation.empty(), "{} {}{}", subject(path, name), violation,
+    check_input(violation.empty(), "{} {}{}", subject(path, name), violation,
                 violation.empty() || violation.back() == '?' ? "" : ".");
   }
 
@@ -93,12 +119,12 @@ class Validator {
   }
 
   void check_sublist(ParameterList& given, const ParameterEntry& valid, const std::string& name,
-                     const std::string& path) const {
+                     const std::string& path) {
     const ListRule& rule = list_rule(valid);
     const std::string here = join_path(path, name);
-    if (rule.form == ListForm::free)
-      return;
-    if (rule.form == ListForm::typed) {
+    if (rule.form == ListForm::free) {
+      check_free_list(given, here);
+    } else if (rule.form == ListForm::typed) {
       check_list(given, chosen_schema(rule, given, source_, here), here);
     } else if (holds_named_lists(rule)) {
       check_elements(given, rule, here);
@@ -107,19 +133,23 @@ class Validator {
     }
   }
 
-  void check_elements(ParameterList& given, const ListRule& rule, const std::string& path) const {
+  void check_elements(ParameterList& given, const ListRule& rule, const std::string& path) {
     for (const auto& [name, entry] : entries(given)) {
-      check_input(entry.isList(),
-                  "{} is a parameter, but this list holds lists only: write "
-                  "<ParameterList name=\"{}\">.",
-                  subject(path, name), name);
-      ParameterList& element = given.sublist(name);
-      const std::string here = join_path(path, name);
-      check_list(element, chosen_schema(rule, element, source_, here), here);
+      collect(path, name, [&, &name = name, &entry = entry] {
+        check_readable(entry);
+        check_input(entry.isList(),
+                    "{} is a parameter, but this list holds lists only: write "
+                    "<ParameterList name=\"{}\">.",
+                    subject(path, name), name);
+        ParameterList& element = given.sublist(name);
+        const std::string here = join_path(path, name);
+        check_list(element, chosen_schema(rule, element, source_, here), here);
+      });
     }
   }
 
   const Source& source_;
+  Mistakes mistakes_;
 };
 
 }  // namespace
@@ -155,7 +185,9 @@ const ParameterList& chosen_schema(const ListRule& rule, const ParameterList& gi
 
 void validate(ParameterList& given, const ParameterList& valid, const Source& source,
               const std::string& path) {
-  Validator(source).check_list(given, valid, path);
+  Validator validator(source);
+  validator.check_list(given, valid, path);
+  validator.mistakes().throw_all();
 }
 
 void validate(Document& document, const ParameterList& valid) {

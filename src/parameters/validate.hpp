@@ -7,10 +7,11 @@
 namespace lockstep {
 
 /// Holds `given` against `valid` and fills in what it leaves out: defaults, nested lists,
-/// docstrings. Throws InputError with the place and the path for an unknown name (with a suggestion
-/// and all names valid there), a wrong type, a value out of bounds or not among the choices, a
-/// wrong number of components, a missing required parameter. `path` is where `given` sits in the
-/// document. Not collective; the same lists give the same result on every rank.
+/// docstrings. Throws InputError with the place and the path of all mistakes together: an unknown
+/// name (with a suggestion and all names valid there), a wrong type, a value that cannot be read,
+/// out of bounds or not among the choices, a wrong number of components, a missing required
+/// parameter. `path` is where `given` sits in the document. Not collective; the same lists give the
+/// same result on every rank.
 void validate(ParameterList& given, const ParameterList& valid, const Source& source,
               const std::string& path = "");
 void validate(Document& document, const ParameterList& valid);

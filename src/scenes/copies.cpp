@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "parameters/formula.hpp"
+#include "parameters/mistakes.hpp"
 #include "parameters/validate.hpp"
 #include "scenes/random_positions.hpp"
 #include "scenes/solids_path.hpp"
@@ -91,8 +92,13 @@ class Copier {
         occupy(solids.sublist(name));
     }
     for (const auto& [name, entry] : entries(written)) {
-      if (entry.isList() && written.sublist(name).isParameter("Copies"))
-        copy(name, written.sublist(name));
+      if (!entry.isList() || !written.sublist(name).isParameter("Copies"))
+        continue;
+      ParameterList uncopied = written.sublist(name);
+      uncopied.remove("Copies");
+      keep_mistakes(uncopied, "Copies", [&, &name = name] { copy(name, written.sublist(name)); });
+      if (uncopied.isParameter("Copies"))  // the solid's other mistakes are told, too
+        solids.sublist(name) = evaluated(uncopied, join_path(solids_path, name), 1);
     }
   }
 
@@ -141,6 +147,9 @@ class Copier {
     given.sublist("Copies") = solid.sublist("Copies");
     evaluate_formulas(given, constants_, source_, path);
     validate(given, schema, source_, path);
+    for (const auto& [name, entry] : entries(given.sublist("Copies")))
+      check_input(!entry.isType<Formula>(), "{}: {}, \"{}\" takes a constant that is a mistake.",
+                  source_.place(join_path(path, "Copies")), in_list(path), name);
     return given.sublist("Copies");
   }
 

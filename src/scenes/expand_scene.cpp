@@ -1,10 +1,12 @@
 #include "scenes/expand_scene.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/errors.hpp"
 #include "parameters/command_line.hpp"
 #include "parameters/formula.hpp"
+#include "parameters/mistakes.hpp"
 #include "scenes/copies.hpp"
 #include "scenes/defaults.hpp"
 #include "scenes/include.hpp"
@@ -42,6 +44,10 @@ void include_all(Document& document, std::vector<std::string>& settings, const C
   document = std::move(whole);
 }
 
+std::string text_of(const ParameterEntry& entry) {
+  return entry.isType<Formula>() ? Teuchos::getValue<Formula>(entry).text : value_text(entry);
+}
+
 /// A number, or a formula: in brackets like those of the scene, or a string as in studies.
 double constant_value(const ParameterEntry& entry, const Variables& known,
                       const std::string& where) {
@@ -62,7 +68,7 @@ double constant_value(const ParameterEntry& entry, const Variables& known,
   }
 }
 
-/// Constants in the order of the file; each may use those before it.
+/// Constants in the order of the file; each may use those before it. One that is a mistake is nan.
 Variables take_constants(Document& document) {
   Variables constants;
   ParameterList& list = document.list;
@@ -75,11 +81,20 @@ Variables take_constants(Document& document) {
   for (const auto& [name, entry] : entries(given)) {
     const std::string where = fmt::format("{}: in \"Constants\", \"{}\"",
                                           source.place(join_path("Constants", name)), name);
-    check_input(name == variable_name(name) && name != "copy",
-                "{} cannot be the name of a number; use letters, digits and _, no digit first, and "
-                "not \"copy\".",
-                where);
-    constants[name] = constant_value(entry, constants, where);
+    const bool is_name = name == variable_name(name) && name != "copy";
+    double value = std::numeric_limits<double>::quiet_NaN();
+    keep_mistakes(list, join_path("Constants", name), [&, &entry = entry] {
+      check_readable(entry);
+      check_input(
+          is_name,
+          "{} cannot be the name of a number; use letters, digits and _, no digit first, and "
+          "not \"copy\".",
+          where);
+      if (!uses_mistake(text_of(entry), constants))
+        value = constant_value(entry, constants, where);
+    });
+    if (is_name)
+      constants[name] = value;
   }
   list.remove("Constants");
   return constants;
@@ -89,6 +104,8 @@ Variables take_constants(Document& document) {
 
 int scene_dimension(const Document& document) {
   const ParameterList& list = document.list;
+  if (list.isParameter("Dimension"))
+    check_readable(list.getEntry("Dimension"));
   check_input(list.isType<int>("Dimension"), "{}: \"Dimension\" (int) is required; it is 2 or 3.",
               document.source.file);
   const int dimension = list.get<int>("Dimension");
@@ -106,7 +123,7 @@ void expand_scene(Document& document, std::vector<std::string>& settings,
     set_unchecked(document, *setting);
   settings.erase(settings.begin(), others);
   const Variables constants = take_constants(document);
-  apply_defaults(document, solid_types);
+  keep_mistakes(document.list, "Defaults", [&] { apply_defaults(document, solid_types); });
   make_copies(document, scene_dimension(document), constants);
   evaluate_formulas(document.list, constants, document.source);
 }

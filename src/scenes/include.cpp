@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/errors.hpp"
+#include "parameters/mistakes.hpp"
 #include "parameters/parameter_rule.hpp"
 #include "parameters/strict_xml.hpp"
 
@@ -18,6 +19,7 @@ std::vector<std::string> take_included_names(Document& document) {
   if (entry->isType<std::string>()) {
     names.push_back(document.list.get<std::string>("Include"));
   } else {
+    check_readable(*entry);
     check_input(entry->isType<ParameterArray<std::string>>(),
                 "{}: \"Include\" must be a string or an Array(string): the paths of scene files.",
                 document.source.place("Include"));

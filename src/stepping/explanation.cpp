@@ -5,24 +5,9 @@
 #include "base/memory.hpp"
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/viscosity.hpp"
+#include "stepping/solid_rows.hpp"
 
 namespace lockstep {
-
-namespace {
-std::string frames_note(const SceneOptions& options) {
-  if (!options.output.frames)
-    return "none";
-  if (!options.output.frame_interval)
-    return options.time.most_steps > 0
-               ? fmt::format("about 100: each hundredth of the run, of {:g} s or {} steps",
-                             options.time.end - options.time.start, options.time.most_steps)
-               : fmt::format("about 100: every {:g} s, a hundredth of the run",
-                             (options.time.end - options.time.start) / 100);
-  return *options.output.frame_interval == 0
-             ? "every step"
-             : fmt::format("every {:g} s", *options.output.frame_interval);
-}
-}  // namespace
 
 template <int dim>
 std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
@@ -58,6 +43,7 @@ std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
   }
   line("solids", fmt::format("{} ({} prescribed, {} thin shells), {} unknowns",
                              solids.solids().size(), n_prescribed, n_shells, solids.n_unknowns()));
+  text += solid_rows(components, *scheme.system().surface());
   const GlobalIndex n_coupled =
       sum_all(comm, static_cast<GlobalIndex>(fluid.coupled_volumes().size()));
   const std::string& why = components.coupling_note;
@@ -73,13 +59,13 @@ std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
   line("contact", components.contact ? components.contact->name() : "none");
   line("pressure regions", fmt::format("{}, null space of dimension {}", fluid.regions().n_regions,
                                        scheme.system().null_space().size()));
-  line("frames", frames_note(options));
   const auto n_pressures = double(fluid.pressure_map()->getGlobalNumElements());
   line("memory so far", fmt::format("{:.0f} MB over all ranks{}", memory.all_ranks_mb,
                                     n_pressures == 0  // an empty tank that sources are to fill
                                         ? ""
                                         : fmt::format(", {:.0f} bytes a cell",
                                                       1e6 * memory.all_ranks_mb / n_pressures)));
+  text += solid_warnings(components, *scheme.system().surface());
   return text;
 }
 

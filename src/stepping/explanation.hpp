@@ -5,7 +5,8 @@
 
 namespace lockstep {
 
-/// Tells what is active in a run, why, and what it costs in memory. Collective.
+/// Tells what is active in a run, why, what it costs in memory, and what is understood of each
+/// solid, with warnings for what is likely a mistake. Collective.
 template <int dim>
 std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
                         const SceneOptions& options);

@@ -10,6 +10,7 @@
 #include "base/xml_text.hpp"
 #include "coupling/automatic_coupling.hpp"
 #include "output/xdmf.hpp"
+#include "parameters/mistakes.hpp"
 #include "parameters/parameter_rule.hpp"
 #include "parameters/shape_sizes.hpp"
 #include "stepping/view.hpp"
@@ -146,6 +147,23 @@ void check_solid_names(const ParameterList& solids) {
   }
 }
 
+/// Refuses bodies far longer than the domain by their vertices, which alone tell how long a mesh
+/// from a file is.
+template <int dim>
+void check_body_lengths(const SolidSystem<dim>& solids, double domain_length) {
+  constexpr double most_domains = 1000;
+  const SurfaceMesh<dim> surface = solids.surface();
+  for (const SolidDescription& solid : solids.solids()) {
+    Box<dim> box;
+    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
+      box.extend(surface.vertices[v]);
+    check_input(box.isEmpty() || box.sizes().maxCoeff() <= most_domains * domain_length,
+                "The solid \"{}\" is {:g} m long, in a domain of {:g} m; lengths are in metres: "
+                "scale its mesh (\"Scale\").",
+                solid.name, box.isEmpty() ? 0. : box.sizes().maxCoeff(), domain_length);
+  }
+}
+
 std::vector<std::pair<std::string, std::string>> jointed_pairs(const ParameterList& scene) {
   std::vector<std::pair<std::string, std::string>> pairs;
   if (!scene.isSublist("Joints"))
@@ -189,11 +207,17 @@ std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries
                                                double domain_length) {
   const ParameterList& solids = scene.sublist("Solids");
   check_solid_names(solids);
-  for (const auto& [name, entry] : entries(solids)) {
+  Mistakes mistakes;
+  for (const auto& entry : solids) {
+    const std::string& name = entry.first;
     const ParameterList& solid = solids.sublist(name);
     if (solid.isSublist("Geometry"))
-      check_body_size(solid.sublist("Geometry"), setting.smallest_length, domain_length, dim, name);
+      mistakes.collect([&] {
+        check_body_size(solid.sublist("Geometry"), setting.smallest_length, domain_length, dim,
+                        name);
+      });
   }
+  mistakes.throw_all();
   std::vector<std::unique_ptr<SolidModel<dim>>> models;
   for (const auto& plugin : registries.solids) {
     NamedLists lists;
@@ -350,6 +374,7 @@ Components<dim> build_components(const Registries<dim>& registries, const Parame
                                         fluid.density(bounds.center())};
   components.solids =
       build_solids<dim>(registries, scene, scene_file, solid_setting, bounds.sizes().maxCoeff());
+  check_body_lengths(*components.solids, bounds.sizes().maxCoeff());
   components.coupling = build_coupling(registries, scene.sublist("Coupling"), *components.solids,
                                        fluid, components.coupling_note);
   const ParameterList& strategy = scene.sublist("Solver").sublist("Strategy");

@@ -12,6 +12,8 @@
 #include "base/errors.hpp"
 #include "base/library_message.hpp"
 #include "parameters/command_line.hpp"
+#include "parameters/mistakes.hpp"
+#include "parameters/parameter_rule.hpp"
 #include "parameters/strict_xml.hpp"
 #include "parameters/validate.hpp"
 #include "solve/solver_file.hpp"
@@ -47,30 +49,35 @@ const std::map<std::string, std::string> spatial_joints = {
 
 /// Scenes are copied from space into the plane: what their joints are there, unless a plug-in has
 /// such joints there too.
-void check_flat_joints(const Document& document, const ParameterList& valid) {
+void check_flat_joints(Document& document, const ParameterList& valid) {
   if (!document.list.isSublist("Joints") || !valid.isSublist("Joints"))
     return;
   const ListRule& offered = list_rule(valid.getEntry("Joints"));
-  const ParameterList& joints = document.list.sublist("Joints");
-  for (const auto& entry : joints) {
-    const std::string& name = entry.first;
+  ParameterList& joints = document.list.sublist("Joints");
+  for (const auto& [name, entry] : entries(joints)) {
     if (!joints.isSublist(name) || !joints.sublist(name).isType<std::string>("Type"))
       continue;
     if (offered.schema_for(joints.sublist(name)))
       continue;
     const auto kind = spatial_joints.find(joints.sublist(name).get<std::string>("Type"));
-    check_input(kind == spatial_joints.end(),
-                "{}: the joint \"{}\" is a \"{}\", which needs three dimensions; in 2D there are "
-                "\"hinge\", \"slider\" and \"weld\": {}.",
-                document.source.place("Joints/" + name + "/Type"), name, kind->first, kind->second);
+    keep_mistakes(joints.sublist(name), "Type", [&, &name = name] {
+      check_input(kind == spatial_joints.end(),
+                  "{}: the joint \"{}\" is a \"{}\", which needs three dimensions; in 2D there are "
+                  "\"hinge\", \"slider\" and \"weld\": {}.",
+                  document.source.place("Joints/" + name + "/Type"), name, kind->first,
+                  kind->second);
+    });
   }
 }
 
 /// Before a schema is chosen by the "Type" of the strategy.
-void check_strategy(const Document& document) {
-  if (document.list.isSublist("Solver") && document.list.sublist("Solver").isSublist("Strategy"))
-    check_strategy_is_not_gone(document.list.sublist("Solver").sublist("Strategy"),
-                               document.source.place("Solver/Strategy/Type"));
+void check_strategy(Document& document) {
+  if (!document.list.isSublist("Solver") || !document.list.sublist("Solver").isSublist("Strategy"))
+    return;
+  ParameterList& strategy = document.list.sublist("Solver").sublist("Strategy");
+  keep_mistakes(strategy, "Type", [&] {
+    check_strategy_is_not_gone(strategy, document.source.place("Solver/Strategy/Type"));
+  });
 }
 
 }  // namespace
@@ -84,21 +91,24 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
       set_from_command_line(document, setting, valid);
   }
   const std::string file = named_solver_file(document);
-  if (!file.empty()) {
-    merge(document, "Solver/Strategy",
-          read_solver_file(resolve_path(document.source.file, file), comm));
-  }
+  if (!file.empty())
+    keep_mistakes(document.list.sublist("Solver"), "File", [&] {
+      merge(document, "Solver/Strategy",
+            read_solver_file(resolve_path(document.source.file, file), comm));
+    });
+  Mistakes mistakes;
   check_strategy(document);
   for (const std::string& setting : settings) {
     if (setting.rfind(solver_file_setting, 0) == 0)
       continue;
-    set_from_command_line(document, setting, valid);
+    mistakes.collect([&] { set_from_command_line(document, setting, valid); });
     check_strategy(document);
   }
   if (dimension == 2)
     check_flat_joints(document, valid);
   const bool tolerance_of_strategy = strategy_sets_tolerance(document);
-  validate(document, valid);
+  mistakes.collect([&] { validate(document, valid); });
+  mistakes.throw_all();
   if (tolerance_of_strategy) {
     ParameterList& solver = document.list.sublist("Solver");
     solver.set("Tolerance", solver.sublist("Strategy").get<double>("Tolerance"));

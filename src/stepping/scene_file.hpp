@@ -10,7 +10,8 @@ namespace lockstep {
 
 /// Makes a document that was read into a complete, validated scene: merges the solver file it names
 /// (Solver/File, relative to the scene), applies the `--set` assignments, fills in defaults; a
-/// Solver/Tolerance that is not given is that of the strategy. Throws InputError. Collective.
+/// Solver/Tolerance that is not given is that of the strategy. Throws InputError with all
+/// mistakes of the scene. Collective.
 void complete_scene(Document& document, const std::vector<std::string>& settings,
                     const ParameterList& valid, const Communicator& comm);
 

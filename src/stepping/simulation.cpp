@@ -215,6 +215,31 @@ void Simulation<dim>::recorded(const Function& f) {
 }
 
 template <int dim>
+std::string Simulation<dim>::explain(bool takes_step) {
+  const Frame now = frame();
+  std::string text = explanation(components_, *scheme_, scene_options_) +
+                     frames_row(scene_options_, stored_megabytes(now.boxes, now.meshes,
+                                                                 scene_options_.output.precision));
+  if (!takes_step)
+    return text;
+  const StepBound first = next_step();
+  StepBound fast = first;
+  if (scene_options_.time.fixed_step == 0) {
+    const double suggested = components_.fluid->suggested_step(scene_options_.time.cfl,
+                                                               speed_of_fall(*components_.fluid));
+    fast = shorter(first, wanted_step(scene_options_.time, suggested));
+  }
+  const auto start = Clock::now();
+  try {
+    scheme_->advance(first.dt);
+  } catch (const Failure& failure) {
+    return text + fmt::format("{:<22} the first step fails: {}\n", "duration", failure.what());
+  }
+  return text +
+         duration_row(scene_options_.time, first, fast.dt, max_all(comm_, seconds_since(start)));
+}
+
+template <int dim>
 int Simulation<dim>::run() {
   install_signal_handlers();  // begin() writes already
   begin();
@@ -386,7 +411,7 @@ void Simulation<dim>::record_ending(const std::string& status,
     return;
   try {
     write_file_atomically(options_.output_directory + "/summary.json",
-                          unfinished_summary(status, message, header_).dump(2) + "\n");
+                          summary_text(unfinished_summary(status, message, header_)));
   } catch (const std::exception&) {
     // The failure has its own message; a full disk may hold no other.
   }

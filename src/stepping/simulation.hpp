@@ -10,6 +10,7 @@
 #include "stepping/explanation.hpp"
 #include "stepping/report/observer_tables.hpp"
 #include "stepping/report/run_tables.hpp"
+#include "stepping/run_cost.hpp"
 #include "stepping/run_summary.hpp"
 #include "stepping/run_warnings.hpp"
 #include "stepping/scene.hpp"
@@ -41,8 +42,10 @@ class Simulation {
   Simulation(const Registries<dim>& registries, const ParameterList& scene,
              const RunOptions& options, const Communicator& comm, const Log& log);
 
-  /// Tells what is active, why, and what it costs in memory; for --explain and --validate.
-  std::string explain() { return explanation(components_, *scheme_, scene_options_); }
+  /// Tells what is active, why, and what it costs in memory; for --explain and --validate. To tell
+  /// how long the run takes it may take the first step, in memory alone; then nothing else may
+  /// follow. Collective.
+  std::string explain(bool takes_step);
   /// Runs to the end or to a signal; returns the exit code (0, or 128 + signal). Collective.
   int run();
 

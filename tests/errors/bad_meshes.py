@@ -1,4 +1,6 @@
 """Bad input: surfaces and volumes from files."""
+import re
+
 from bad_input import DENSITY, GEOMETRY, RADIUS, SCENE_3D, SOFT_SCENE_3D, Case, value
 from program import SCENE
 
@@ -10,6 +12,12 @@ f 1 3 2
 f 1 2 4
 f 1 4 3
 f 2 3 4
+"""
+TOO_MANY_POINTS = """# vtk DataFile Version 3.0
+a mesh
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 20000000 double
 """
 FLAT = """v 0 0 0
 v 1 0 0
@@ -55,6 +63,13 @@ def mesh(text, name="body.obj"):
 
 CASES = [
     Case("a flat volume", ["Ball", "flat"], **mesh(FLAT)),
+    Case("an OFF file of too many vertices", ["body.off, line 2", "20000000 vertices or elements", "at most 10000000"],
+         **mesh("OFF\n20000000 3 0\n", "body.off")),
+    Case("a volume mesh of too many points", ["body.vtk, line 5", "20000000 vertices or elements", "at most 10000000"],
+         scene=SOFT_SCENE_3D, files=[("body.vtk", TOO_MANY_POINTS)],
+         change=(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.vtk"))),
+    Case("a mesh in micrometres", ["The solid \"Ball\" is 900000 m long, in a domain of", "\"Scale\""],
+         **mesh(re.sub(r"\b1\b(?=.*$)", "9e5", TETRAHEDRON.split("f", 1)[0], flags=re.M) + "f" + TETRAHEDRON.split("f", 1)[1])),
     Case("no mesh", ["body.obj", "cannot open"], **mesh(None)),
     Case("a mesh that is a pipe", ["pipe.obj", "pipe, not a file"], **mesh(None, "pipe.obj")),
     Case("a volume mesh that is a pipe", ["pipe.vtk", "pipe, not a file"],

@@ -174,6 +174,30 @@ class Faults(unittest.TestCase):
                 result = simulate(folder, "--restart", newest_checkpoint(folder), "--steps", 5, ranks=ranks)
                 self.assertEqual(result.returncode, 0, result.stderr)
 
+    def test_a_table_that_is_removed(self):
+        """Rows that nobody would ever see are told of."""
+        with tempfile.TemporaryDirectory() as folder:
+            history = Path(folder) / "output" / "history.csv"
+            with started(folder, "--set", "Time/End=1e6") as process:
+                wait_for(lambda: history.exists() and len(read_table(history)) > 2, process)
+                history.unlink()
+                output, _ = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 4, output)
+                self.assertIn("history.csv' was removed while the run wrote to it", output)
+
+    def test_a_folder_whose_name_is_no_text(self):
+        """File names are bytes; what a page or a table says of them must be text all the same."""
+        with tempfile.TemporaryDirectory() as folder:
+            output = os.fsencode(folder) + b"/r\xe9sultat"
+            (Path(folder) / "scene.xml").write_text(SCENE)
+            for more in ([], ["--restart", output + b"/checkpoint-000002.h5"]):
+                steps = "4" if more else "2"
+                result = subprocess.run([SIMULATE, f"{folder}/scene.xml", "--output", output, "--steps", steps, *more],
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
+                self.assertEqual(result.returncode, 0, result.stderr)
+            for name in (b"/summary.json", b"/frames.xmf", b"/used-parameters.xml", b"/history.csv"):
+                Path(os.fsdecode(output + name)).read_text("utf-8")
+
     def test_a_limit_of_the_size_of_files(self):
         """It is told from the first file on."""
         for size in (16, 4096, 65536):
@@ -293,20 +317,38 @@ class Faults(unittest.TestCase):
         water = xml("Scene", {
             "Dimension": 2, "Domain": {"Cells": (16, 16)}, "Solids": {"Ball": ball}, "Time": {"Fixed Step": .01},
             "Fluid": {"Gravity": (0., -9.8), "Free Surface": {"Liquid": {"Pool": {"Type": "level", "Height": .4}}}}})
-        with tempfile.TemporaryDirectory() as folder:
-            self.assertEqual(simulate(folder, "--steps", 2, scene=water).returncode, 0)
-            checkpoint = newest_checkpoint(folder)
-            whole = without_checksum(checkpoint.read_bytes())
-            for name, edit in cases.items():
-                with self.subTest(name):
-                    content = io.BytesIO(whole)
-                    with h5py.File(content, "r+") as file:
-                        edit(file)
-                    checkpoint.write_bytes(with_checksum(content.getvalue()))
-                    result = simulate(folder, "--restart", checkpoint, "--steps", 3, scene=water)
-                    self.assertIn(result.returncode, (2, 4), result.stderr)
-                    self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
-                    self.assertIn(checkpoint.name, result.stderr)
+        gas_cases = {
+            "bubbles without end": dataset("fluid/gas_bubble/values", one(1e9)),
+            "half a bubble": dataset("fluid/gas_bubble/values", one(.5)),
+            "less gas than none": dataset("fluid/gas_amount/values", one(-1.)),
+        }
+        hole = {name: {"Type": "box", "Lower": lower, "Upper": upper} for name, lower, upper in (
+            ("Bottom", (-1., -1.), (2., .2)), ("Left", (-1., -1.), (.3, .9)), ("Right", (.7, -1.), (2., .9)),
+            ("Top", (-1., .6), (2., .9)))}
+        gas = xml("Scene", {
+            "Dimension": 2, "Domain": {"Cells": (16, 16)}, "Time": {"Fixed Step": .001},
+            "Fluid": {"Gravity": (0., -9.8), "Free Surface": {"Liquid": hole, "Trapped Air": "ideal gas"}}})
+        for scene, edits in ((water, cases), (gas, gas_cases)):
+            with tempfile.TemporaryDirectory() as folder:
+                self.assertEqual(simulate(folder, "--steps", 2, scene=scene).returncode, 0)
+                for name, edit in edits.items():
+                    with self.subTest(name):
+                        self.assert_refuses_edited_checkpoint(folder, scene, edit)
+
+    def assert_refuses_edited_checkpoint(self, folder, scene, edit):
+        checkpoint = newest_checkpoint(folder)
+        whole = checkpoint.read_bytes()
+        content = io.BytesIO(without_checksum(whole))
+        with h5py.File(content, "r+") as file:
+            edit(file)
+        checkpoint.write_bytes(with_checksum(content.getvalue()))
+        try:
+            result = simulate(folder, "--restart", checkpoint, "--steps", 3, scene=scene)
+            self.assertIn(result.returncode, (2, 4), result.stderr)
+            self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+            self.assertIn(checkpoint.name, result.stderr)
+        finally:
+            checkpoint.write_bytes(whole)
 
     def test_checkpoint_of_another_scene(self):
         with tempfile.TemporaryDirectory() as folder:

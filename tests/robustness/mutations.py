@@ -129,10 +129,39 @@ def mesh_case(rng):
                 [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.TEXT)
 
 
+def water(**surface):
+    """A pool with a light ball in it, and what else its surface may have."""
+    pool = {"Pool": {"Type": "level", "Height": 0.6}}
+    return {**ball(), "Domain": {"Cells": [16, 16]}, "Time": {"Fixed Step": 0.005, "Steps": 2},
+            "Fluid": {"Density": 1000.0, "Gravity": [0.0, -9.8], "Free Surface": {"Liquid": pool, **surface}}}
+
+
+def bubble():
+    """The gas that four boxes of water leave free."""
+    def box(lower, upper):
+        return {"Type": "box", "Lower": lower, "Upper": upper}
+    around = {"Bottom": box([-1.0, -1.0], [2.0, 0.1]), "Left": box([-1.0, -1.0], [0.05, 0.9]),
+              "Right": box([0.9, -1.0], [2.0, 0.9]), "Top": box([-1.0, 0.8], [2.0, 0.9])}
+    content = water(**{"Trapped Air": "ideal gas"})
+    content["Fluid"]["Free Surface"]["Liquid"] = around
+    return content
+
+
+def jointed():
+    """Two bars with a hinge between them, and the budget of energy."""
+    content = ball()
+    bar = {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": [0.3, 0.1]}, "Density": 700.0}
+    content["Solids"] = {"Left": {**bar, "Position": [0.3, 0.5]}, "Right": {**bar, "Position": [0.65, 0.5]}}
+    joint = {"Type": "hinge", "Solids": ["Left", "Right"], "Point": [0.475, 0.5]}
+    return {**content, "Joints": {"Elbow": joint}, "Observers": {"budget": {"Type": "energy"}}}
+
+
 @functools.lru_cache
 def checkpoint_and_system(kind):
     """Written once by a run of two steps."""
-    content = {"rigid": ball(), "soft": soft_ball()}[kind]
+    content = {"rigid": ball, "soft": soft_ball, "joints": jointed, "gas": bubble,
+               "particles": lambda: water(Interface={"Type": "particle level set", "Drops": "ballistic"}),
+               "fractions": lambda: water(Interface={"Type": "volume of fluid"})}[kind]()
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         (folder / "scene.xml").write_text(to_xml("Scene", content))
@@ -150,6 +179,14 @@ def checkpoint_case(rng):
                  "3"], mutators.HDF5)
 
 
+def checkpoint_content_case(rng):
+    """The checksum fits: something else than a run wrote the file."""
+    scene, checkpoint, _ = checkpoint_and_system(rng.choice(["rigid", "soft", "joints", "gas", "gas", "particles", "fractions"]))
+    return Case({"scene.xml": scene, "checkpoint.h5": checkpoint}, "checkpoint.h5",
+                [program("simulate"), "scene.xml", "--quiet", "--output", "output", "--restart", "checkpoint.h5", "--steps",
+                 "4"], mutators.RESEALED_HDF5)
+
+
 def system_case(rng):
     _, _, system = checkpoint_and_system(rng.choice(["rigid", "soft"]))
     solver = rng.choice(["schur-cg", "paper", "direct", "pressure-schur"])
@@ -160,7 +197,7 @@ def system_case(rng):
 
 KINDS = [("scene, validated", scene_case, 7), ("scene, by hand", hand_written_case, 3), ("scene, run", run_case, 4),
          ("solver", solver_case, 3), ("study", study_case, 3), ("mesh", mesh_case, 7), ("checkpoint", checkpoint_case, 4),
-         ("system", system_case, 4)]
+         ("system", system_case, 4), ("checkpoint, sealed again", checkpoint_content_case, 0)]  # 0: only by --kind
 
 
 def non_finite(folder):

@@ -1,10 +1,15 @@
 """Mutators, which damage files. Each is a pure function of a random generator and the bytes of a file."""
 import io
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
 import h5py
 import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "errors"))
+from program import with_checksum, without_checksum  # noqa: E402
 
 NUMBER = re.compile(rb"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 TEXTS = ["nan", "inf", "-inf", "1e308", "-1e308", "1e-308", "1e999", "0", "-0", "-1", "", "1e9", "2147483647", "-2147483648",
@@ -202,6 +207,16 @@ def change_attribute(rng, data):
     return edit_hdf5(data, change)
 
 
+def sealed_again(mutator):
+    """Damages what the file holds; its last line, the checksum, is made anew."""
+    def mutate(rng, data):
+        return with_checksum(mutator(rng, without_checksum(data)))
+    mutate.__name__ = mutator.__name__
+    return mutate
+
+
+RESEALED_HDF5 = [sealed_again(mutator) for mutator in
+                 (change_values, change_values, change_values, change_shape, drop_object, change_attribute)]
 HDF5 = [*BYTES, change_values, change_values, change_values, change_shape, change_shape, drop_object, change_attribute,
         change_attribute]
 

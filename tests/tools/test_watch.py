@@ -142,6 +142,20 @@ class Watch(unittest.TestCase):
                 self.get(address + "../../etc/passwd")
             self.assertEqual(raised.exception.code, 404)
 
+    def test_only_for_pages_of_this_machine(self):
+        """A page of elsewhere whose name is pointed at this machine sends that name as the host."""
+        self.assertEqual(self.run_to_end("--steps", "1"), 0)
+        with self.watched() as address:
+            for host, code in (("localhost:1", 200), ("evil.example:8765", 403), ("127.0.0.1.evil.example:8765", 403)):
+                request = urllib.request.Request(address + "runs.json", headers={"Host": host})
+                try:
+                    with urllib.request.urlopen(request, timeout=60) as answer:
+                        found = answer.status
+                except urllib.error.HTTPError as error:
+                    found = error.code
+                    error.close()
+                self.assertEqual(found, code, host)
+
 
 if __name__ == "__main__":
     SIMULATE, SCENE = sys.argv[1:3]

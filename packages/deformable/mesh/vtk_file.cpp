@@ -100,6 +100,7 @@ class VtkReader {
 
   void read_points() {
     const long n = count();
+    lines_.check_count(n);
     next();  // float or double
     for (long i = 0; i < n; ++i) {
       Point<3> x;
@@ -116,6 +117,7 @@ class VtkReader {
   /// Versions up to 4 give the number of corners before each cell, version 5 offsets of all cells.
   void read_cells() {
     const long first = count(), second = count();
+    lines_.check_count(first);
     const std::string word = next();
     if (word == "OFFSETS") {
       next();  // type

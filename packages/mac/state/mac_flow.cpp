@@ -106,9 +106,29 @@ void MacFlow<dim>::save(CheckpointWriter& checkpoint) const {
     liquid->interface().save(checkpoint);
 }
 
+namespace {
+/// Bubbles are counted by their numbers, and what they hold is shared out by its amounts
+/// (GasBubbles::fields).
+void check_gas(const std::vector<StoredField>& fields, const CheckpointReader& checkpoint) {
+  constexpr double most = GasBubbles<2>::most;
+  const auto is_number = [](double number) {
+    return number >= -1 && number <= most && number == std::floor(number);
+  };
+  const auto is_amount = [](double amount) { return amount >= 0; };
+  for (const StoredField& field : fields) {
+    const CellField& values = *field.components.front();
+    checkpoint.check(
+        (field.name != "gas_bubble" || std::all_of(values.begin(), values.end(), is_number)) &&
+            (field.name != "gas_amount" || std::all_of(values.begin(), values.end(), is_amount)),
+        "the numbers or amounts of its gas cannot be");
+  }
+}
+}  // namespace
+
 template <int dim>
 void MacFlow<dim>::load(const CheckpointReader& checkpoint) {
   load_fields(domain, fields, checkpoint);
+  check_gas(fields, checkpoint);
   prediction = velocity;
   scaled_pressure = accepted_pressure;
   CellField cells(domain.grid.n_stored_cells(), static_cast<double>(CellState::outside));

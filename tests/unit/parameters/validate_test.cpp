@@ -137,6 +137,32 @@ TEST(Validate, OptionalListsRequireOnlyWhereGiven) {
             "case.xml: in \"Smoke\", the parameter \"Rate\" (double) is required: Rate [1/s].");
 }
 
+TEST(Validate, AllMistakesOfAFileAreToldTogether) {
+  Document document = read_xml_string(R"xml(<ParameterList>
+  <ParameterList name="Fluid">
+    <Parameter name="Density" type="double" value="heavy"/>
+    <Parameter name="Steps" type="int" value="0"/>
+    <Parameter name="Visosity" type="double" value="1"/>
+  </ParameterList>
+  <ParameterList name="Solids">
+    <ParameterList name="A"><Parameter name="Type" type="string" value="box"/></ParameterList>
+  </ParameterList>
+  <Parameter name="Scheme" type="int" value="1"/>
+  <ParameterList name="Solver"><Parameter name="Anything" type="int" value="1.5"/></ParameterList>
+</ParameterList>)xml",
+                                      "case.xml", FormulaPolicy::kept);
+
+  const std::string message = input_error([&] { validate(document, scene_schema()); });
+
+  EXPECT_THAT(message, ::testing::StartsWith("There are 6 mistakes:\n1. case.xml, line "));
+  for (const char* part :
+       {"line 3: in \"Fluid\", \"Density\" is \"heavy\"", "line 4: in \"Fluid\", \"Steps\" is 0",
+        "line 5: in \"Fluid\", \"Visosity\" is not a parameter", "\"Size\" (Array(double), 2",
+        "line 10: at the top level, \"Scheme\" has type \"int\"",
+        "line 11: in \"Solver\", \"Anything\" is \"1.5\""})
+    EXPECT_THAT(message, ::testing::HasSubstr(part));
+}
+
 TEST(Validate, TypeChoosesTheSchema) {
   const auto solid = [](const std::string& parameters) {
     return validating("<ParameterList name=\"Solids\">\n<ParameterList name=\"A\">\n" + parameters +
@@ -149,8 +175,11 @@ TEST(Validate, TypeChoosesTheSchema) {
 
   EXPECT_EQ(solid(type("ball") + radius), "");
   EXPECT_EQ(solid(type("box") + "\n" + radius),
-            "case.xml, line 5: in \"Solids/A\", \"Radius\" is not a parameter.\nValid here: "
-            "\"Type\", \"Size\".");
+            "There are 2 mistakes:\n"
+            "1. case.xml, line 5: in \"Solids/A\", \"Radius\" is not a parameter.\nValid here: "
+            "\"Type\", \"Size\".\n"
+            "2. case.xml, line 3: in \"Solids/A\", the parameter \"Size\" (Array(double), 2 "
+            "components) is required: Edge lengths [m].");
   EXPECT_EQ(solid(type("bal")),
             "case.xml, line 4: in \"Solids/A\", \"Type\" is \"bal\", but must be one of \"ball\", "
             "\"box\"; did you mean \"ball\"?");

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/errors.hpp"
+#include "parameters/mistakes.hpp"
 #include "parameters/strict_xml.hpp"
 #include "scenes/expand_scene.hpp"
 
@@ -27,9 +28,19 @@ Document expanded(const std::string& body, std::vector<std::string> settings = {
   return document;
 }
 
+/// Throws what is a mistake in the list, as `validate` does.
+void check_readable_list(const ParameterList& list) {
+  for (const auto& [name, entry] : entries(list)) {
+    if (entry.isList())
+      check_readable_list(list.sublist(name));
+    else
+      check_readable(entry);
+  }
+}
+
 std::string refusal(const std::string& body, const std::vector<std::string>& settings = {}) {
   try {
-    expanded(body, settings);
+    check_readable_list(expanded(body, settings).list);
   } catch (const InputError& error) {
     return error.what();
   }

@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+
+#include "stepping/step/paper_step.hpp"
+
+namespace lockstep {
+
+/// A row a solid, for --explain: mass, volume, box in metres and in cells, elements of its surface,
+/// whether the fluid is inside of it, the part of its box outside of the domain, the longest stable
+/// step of its kind. `surface`: that of the solids at the present positions. Local.
+template <int dim>
+std::string solid_rows(const Components<dim>& components, const SurfaceSnapshot<dim>& surface);
+
+/// A line for each solid that is likely a mistake: smaller than two cells, outside of the domain,
+/// lighter than the liquid and under its surface at the start. Collective.
+template <int dim>
+std::string solid_warnings(const Components<dim>& components, const SurfaceSnapshot<dim>& surface);
+
+}  // namespace lockstep

@@ -1,0 +1,77 @@
+"""Rows of `simulate --explain` on the solids of a scene, its frames and its duration, and its warnings."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
+from simulation import SIMULATE  # noqa: E402
+
+STATIC = {"Motion": {"Type": "static"}}
+
+
+def box(width, height, x, y, **more):
+    return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (width, height)}, "Position": (x, y),
+            **({} if "Motion" in more else {"Density": 500.}), **more}
+
+
+SHEET = {"Type": "cloth", "Geometry": {"Shape": "sheet", "Size": (0., .5), "Normal": "x"}, "Young's Modulus": 1e4,
+         "Thickness": .01, "Surface Density": 1., "Position": (.8, .5), "Time Integration": "semi-implicit"}
+
+
+class Explain(unittest.TestCase):
+    def explained(self, solids, option="--explain", **content):
+        """The rows by their titles, those of solids by their names; the warnings. Nothing may be written."""
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Path(folder) / "scene.xml"
+            scene.write_text(xml("Scene", {"Dimension": 2, "Domain": {"Cells": (16, 16)}, "Solids": solids, **content}))
+            result = subprocess.run([SIMULATE, scene, option, "--output", f"{folder}/output"], capture_output=True, text=True)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertEqual([path.name for path in Path(folder).iterdir()], ["scene.xml"])
+        lines = [line for line in result.stdout.splitlines()[1:] if line]
+        rows = {line[:22].strip(): line[22:].strip() for line in lines if not line.startswith("warning")}
+        return rows, [line[22:].strip() for line in lines if line.startswith("warning")]
+
+    def test_a_row_a_solid(self):
+        rows, warnings = self.explained({"Crate": box(.5, .25, .5, .5), "Sill": box(.25, .25, 0., .75, **STATIC), "Flag": SHEET})
+        self.assertRegex(rows["Crate"], r"^62.5 kg, 0.125 m\^2, 0.5 x 0.25 m \(8 x 4 cells\), \d+ segments, dry inside$")
+        self.assertRegex(rows["Sill"], r"^prescribed, 0.0625 m\^2, .* dry inside, 50 % of its box outside of the domain$")
+        self.assertRegex(rows["Flag"], r"^0.5 kg, 0 x 0.5 m \(0 x 8 cells\), \d+ segments, wet inside, steps of at most .* s \(.*Flag.*\)$")
+        self.assertEqual(warnings, [])
+
+    def test_frames_and_duration(self):
+        rows, _ = self.explained({}, Output={"Frame Interval": .25}, Time={"End": 1., "Fixed Step": .1})
+        self.assertRegex(rows["frames"], r"^every 0.25 s, 5 x 0.00\d+ MB = 0.0\d+ MB, uncompressed$")
+        self.assertRegex(rows["duration"], r"^about .* s: 10 steps of 0.1 s \(Fixed Step\); the first takes .* s$")
+        rows, _ = self.explained({}, Time={"End": 1.}, Fluid={"Gravity": (0., -9.8)})
+        self.assertRegex(rows["duration"], r"^about .* to .* s: \d+ steps of .* s, as the first.*, to \d+ of .* s, as for what falls")
+        self.assertNotIn("duration", self.explained({}, "--validate")[0])
+
+    def test_an_empty_tank(self):
+        jet = {"Shape": "ball", "Center": (.5, .8), "Radius": .1, "Liquid": True, "Velocity": (0., -1.)}
+        surface = {"Interface": {"Type": "particle level set"}}
+        rows, _ = self.explained({}, Time={"End": 1.}, Fluid={"Gravity": (0., -9.8), "Sources": {"Jet": jet}, "Free Surface": surface})
+        self.assertRegex(rows["duration"], "the first takes .* s$")
+
+    def test_many_solids(self):
+        copies = {"Copies": {"Type": "lattice", "Count": (6, 5), "Spacing": (.15, .17)}}
+        rows, warnings = self.explained({"Crumb": {**box(.1, .1, .1, .1), **copies}})
+        self.assertEqual(sum(name.startswith("Crumb") for name in rows), 20)
+        self.assertEqual(len(warnings), 20)
+        self.assertEqual(rows[""], "and 10 more")
+
+    def test_warnings(self):
+        solids = {"Crumb": box(.1, .5, .5, .5), "Far": box(.25, .25, 3., .5), "Big": box(.25, .25, .25, .25)}
+        self.assertEqual(self.explained(solids)[1], [
+            '"Crumb" is 1.6 cells across; the fluid sees bodies of two and more',
+            '"Far" lies outside of the domain, where there is no fluid'])
+        pool = {"Gravity": (0., -9.8), "Free Surface": {"Liquid": {"Pool": {"Type": "level", "Height": .75}}}}
+        solids = {"Cork": box(.25, .25, .25, .25), "Raft": box(.25, .25, .7, .75), "Stone": {**box(.2, .2, .7, .25), "Density": 3000.}}
+        self.assertEqual(self.explained(solids, Fluid=pool)[1],
+                         ['"Cork" floats in the liquid, but is all under its surface at the start'])
+
+
+if __name__ == "__main__":
+    unittest.main()
