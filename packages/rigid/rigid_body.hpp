@@ -28,7 +28,7 @@ struct RigidPose {
   Orientation<dim> orientation = rotation_of<dim>(AngularVector<dim>::Zero());
 };
 
-/// What pushes a body besides gravity, in axes of space.
+/// A push besides gravity, in axes of space.
 template <int dim>
 struct Load {
   Point<dim> force = Point<dim>::Zero();                   ///< at the centre of mass [N]

@@ -71,7 +71,7 @@ TEST(Mass, OwnCentreAndInertia) {
   EXPECT_NEAR(ballasted.density, 1.5, 1e-13);
   EXPECT_NEAR(ballasted.volume, 8, 1e-13);
   EXPECT_EQ(ballasted.inertia(0, 0), 7);
-  EXPECT_EQ(ballasted.arm(), Point<2>(0, 0));  // so that joints may connect it
+  EXPECT_EQ(ballasted.arm(), Point<2>(0, 0));  // joints may connect it
   EXPECT_LE((ballasted.center() - Point<2>(1.5, 5.25)).norm(), 1e-14);
   // The centroid of its surface stays where it was.
   const Point<2> centroid =
