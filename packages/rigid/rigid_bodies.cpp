@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "rigid/body_load.hpp"
 #include "rigid/rigid_parameters.hpp"
 
 namespace lockstep {
@@ -146,11 +147,28 @@ Point<dim> RigidBodies<dim>::effective_velocity(const SurfacePoint<dim>& point,
   return body_of(point).last_move.velocity(x);
 }
 
+/// In S2 at the middle of the step, which makes velocities second order; in S1 at the time whose
+/// force carries the body as far as one that grows linearly, two thirds of the half step dt.
 template <int dim>
-RigidVector<dim> RigidBodies<dim>::load_impulse(const RigidBody<dim>& body, double dt) const {
-  const Point<dim> impulse = dt * (body.mass * gravity_ + body.force);
+Load<dim> RigidBodies<dim>::load_on(const RigidBody<dim>& body, double time, double dt) const {
+  Load<dim> load;
+  if (body.load && has_moved_) {
+    const Point<dim> before = body.pose_before.position + body.arm(body.pose_before.orientation);
+    load = body.load(time + dt / 2, (before + body.center()) / 2);
+  } else if (body.load) {
+    load = body.load(time + 2 * dt / 3, body.center());
+  }
+  load.force += body.mass * gravity_;
+  return load;
+}
+
+template <int dim>
+RigidVector<dim> RigidBodies<dim>::load_impulse(const RigidBody<dim>& body, double time,
+                                                double dt) const {
+  const Load<dim> load = load_on(body, time, dt);
+  const Point<dim> impulse = dt * load.force;
   RigidVector<dim> generalized;
-  generalized << impulse, cross<dim>(body.arm(), impulse) + dt * body.torque;
+  generalized << impulse, cross<dim>(body.arm(), impulse) + dt * load.torque;
   return generalized;
 }
 
@@ -159,16 +177,15 @@ bool RigidBodies<dim>::set_load(int solid, const Point<dim>& force,
                                 const AngularVector<dim>& torque) {
   check_input(bodies_[solid].dynamic(), "\"{}\" is prescribed; no force moves it.",
               solids_[solid].name);
-  bodies_[solid].force = force;
-  bodies_[solid].torque = torque;
+  bodies_[solid].load = constant_load<dim>({force, torque});
   return true;
 }
 
 template <int dim>
-void RigidBodies<dim>::explicit_momentum(double, double dt, Vector& momentum) const {
+void RigidBodies<dim>::explicit_momentum(double time, double dt, Vector& momentum) const {
   const auto values = momentum.getDataNonConst();
   for_each_own([&](const RigidBody<dim>& body, int first_row) {
-    const RigidVector<dim> total = body.momentum + load_impulse(body, dt);
+    const RigidVector<dim> total = body.momentum + load_impulse(body, time, dt);
     std::copy(total.data(), total.data() + total.size(), values.begin() + first_row);
   });
 }
@@ -180,7 +197,7 @@ void RigidBodies<dim>::add_midpoint_correction(double dt, Vector& momentum) cons
     // A body in the fluid does not respond to its load alone: a light one would turn without bound.
     RigidVector<dim> start = body.momentum;
     if (!body.seen_by_fluid)
-      start += load_impulse(body, dt);
+      start += load_impulse(body, time_, dt);
     const RigidVector<dim> correction = midpoint_correction<dim>(body, start, dt);
     for (int k = 0; k < n_rigid_dofs<dim>; ++k)
       values[first_row + k] += correction[k];
@@ -188,12 +205,13 @@ void RigidBodies<dim>::add_midpoint_correction(double dt, Vector& momentum) cons
 }
 
 template <int dim>
-Momentum<dim> RigidBodies<dim>::external_impulse(double, double dt) const {
+Momentum<dim> RigidBodies<dim>::external_impulse(double time, double dt) const {
   Momentum<dim> total;
   for (const int b : dynamic_) {
     const RigidBody<dim>& body = bodies_[b];
-    total.add(body.pose.position + body.arm(), dt * (body.mass * gravity_ + body.force));
-    total.angular += dt * body.torque;
+    const Load<dim> load = load_on(body, time, dt);
+    total.add(body.center(), dt * load.force);
+    total.angular += dt * load.torque;
   }
   return total;
 }
@@ -252,6 +270,7 @@ void RigidBodies<dim>::move(const Vector& velocity, double time, double dt) {
     lockstep::move(body, own, time, dt);
   }
   time_ = time + dt;
+  has_moved_ = true;
   update_surface();
   mass_ = assemble_mass();
 }
@@ -270,7 +289,7 @@ std::vector<SolidState<dim>> RigidBodies<dim>::states() const {
   for (const RigidBody<dim>& body : bodies_) {
     SolidState<dim> state;
     state.name = body.name;
-    state.center_of_mass = body.pose.position + body.arm();
+    state.center_of_mass = body.center();
     state.velocity = body.velocity_of_center();
     state.angular_velocity = body.angular_velocity();
     state.mass = body.mass;

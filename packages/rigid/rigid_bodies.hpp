@@ -46,6 +46,7 @@ class RigidBodies : public SolidModel<dim>,
   RCP<const Map> dof_map() const override { return map_; }
   /// Block diagonal, a full block per body; a CrsMatrix.
   RCP<const LinearOperator> mass() const override { return mass_; }
+  void begin_step(double, double) override { has_moved_ = false; }
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
   void add_midpoint_correction(double dt, Vector& momentum) const override;
   Momentum<dim> external_impulse(double time, double dt) const override;
@@ -79,8 +80,10 @@ class RigidBodies : public SolidModel<dim>,
   /// Sets (or adds) f(body) in the rows of this rank.
   template <typename Function>
   void for_each_own(const Function& f) const;
-  /// Impulse of gravity and of the body's constant loads, about its reference point.
-  RigidVector<dim> load_impulse(const RigidBody<dim>& body, double dt) const;
+  /// Weight and the body's own load in a coupled solve over dt, in a step that began at `time`.
+  Load<dim> load_on(const RigidBody<dim>& body, double time, double dt) const;
+  /// Its impulse about the body's reference point.
+  RigidVector<dim> load_impulse(const RigidBody<dim>& body, double time, double dt) const;
   void describe();
   void update_surface();
   std::vector<double> state() const;  ///< all that a step changes
@@ -99,6 +102,7 @@ class RigidBodies : public SolidModel<dim>,
   RCP<const Map> map_;
   RCP<const LinearOperator> mass_;
   double time_ = 0;
+  bool has_moved_ = false;  ///< in the present step
 };
 
 /// The model of all sublists of type "rigid body" of "Solids": names and validated lists (see

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <functional>
 #include <string>
 
 #include "geometry/surface_mesh.hpp"
@@ -27,6 +28,17 @@ struct RigidPose {
   Orientation<dim> orientation = rotation_of<dim>(AngularVector<dim>::Zero());
 };
 
+/// A push besides gravity, in axes of space.
+template <int dim>
+struct Load {
+  Point<dim> force = Point<dim>::Zero();                   ///< at the centre of mass [N]
+  AngularVector<dim> torque = AngularVector<dim>::Zero();  ///< [N m]
+};
+
+/// A load by time [s] and place of the centre of mass [m]. Empty: there is none.
+template <int dim>
+using LoadLaw = std::function<Load<dim>(double time, const Point<dim>& center)>;
+
 /// Properties of a body that never change. Its coordinates have their origin at the reference
 /// point: the centre of mass, or the pivot.
 template <int dim>
@@ -35,14 +47,13 @@ struct RigidBodyConstants {
   SurfaceMesh<dim> surface;
   bool closed = true;
   bool seen_by_fluid = true;  ///< false: neither by contact; its surface is in nothing
-  double density = 0;         ///< [kg/m^dim], of a shell [kg/m^(dim-1)]
+  double density = 0;         ///< mean [kg/m^dim], of a shell [kg/m^(dim-1)]
   double mass = 0;            ///< [kg]
   double volume = 0;          ///< [m^dim]; 0 for shells
   Point<dim> center_of_mass = Point<dim>::Zero();  ///< in body coordinates [m]
   Inertia<dim> inertia = Inertia<dim>::Zero();     ///< about it, in body axes [kg m^2]
   std::array<bool, n_rigid_dofs<dim>> locked{};    ///< dofs held at zero, in world axes
-  Point<dim> force = Point<dim>::Zero();           ///< constant load at the centre of mass [N]
-  AngularVector<dim> torque = AngularVector<dim>::Zero();  ///< constant load [N m]
+  LoadLaw<dim> load;
   double restitution = 0, friction = 0;
   MotionScript<dim> script;     ///< empty: dynamic
   RigidPose<dim> initial_pose;  ///< initial pose of the script
@@ -63,6 +74,7 @@ struct RigidBody : RigidBodyConstants<dim> {
   Point<dim> arm(const Orientation<dim>& orientation) const {
     return orientation * this->center_of_mass;
   }
+  Point<dim> center() const { return pose.position + arm(); }  ///< present centre of mass [m]
   Point<dim> linear_velocity() const { return velocity.template head<dim>(); }
   AngularVector<dim> angular_velocity() const { return velocity.template tail<n_rotations<dim>>(); }
   Point<dim> velocity_of_center() const {

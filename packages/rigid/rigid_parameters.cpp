@@ -5,6 +5,8 @@
 #include "base/errors.hpp"
 #include "motion/list_values.hpp"
 #include "rigid/body_geometry.hpp"
+#include "rigid/body_load.hpp"
+#include "rigid/body_mass.hpp"
 #include "rigid/body_motion.hpp"
 
 namespace lockstep {
@@ -16,19 +18,6 @@ std::vector<std::string> dof_names() {
   if (dim == 2)
     return {"x", "y", "rotation"};
   return {"x", "y", "z", "rotation x", "rotation y", "rotation z"};
-}
-
-template <int dim>
-void declare_mass(ParameterList& list) {
-  declare_optional<double>(
-      list, "Density",
-      "Density of a volume [kg/m^3] (2D: [kg/m^2]). A dynamic body needs one of density and mass.");
-  declare_optional<double>(
-      list, "Surface Density",
-      "Mass per area of a thin shell [kg/m^2] (2D: [kg/m]), instead of \"Density\".");
-  declare_optional<double>(list, "Mass", "Mass [kg] (2D: per unit depth), spread evenly.");
-  for (const char* name : {"Density", "Surface Density", "Mass"})
-    set_positive(list, name);
 }
 
 template <int dim>
@@ -48,46 +37,6 @@ void declare_pose(ParameterList& list) {
       "Reference point, in coordinates of the body [m]: what locked translations hold (a hinge) "
       "and scripts turn about. Default: the centre of mass.");
   set_length(list, "Pivot", dim);
-}
-
-/// Density per unit of measure (volume or surface); 0 for a prescribed body that names none.
-template <int dim>
-double read_density(const ParameterList& list, const RigidBodyConstants<dim>& body,
-                    double measure) {
-  const std::string wanted = body.closed ? "Density" : "Surface Density";
-  const std::string other = body.closed ? "Surface Density" : "Density";
-  check_input(!list.isParameter(other),
-              "The solid \"{}\" is a {}, so it has no \"{}\"; give \"{}\" or \"Mass\".", body.name,
-              body.closed ? "volume" : "thin shell", other, wanted);
-  const bool by_density = list.isParameter(wanted), by_mass = list.isParameter("Mass");
-  check_input(!(by_density && by_mass),
-              "The solid \"{}\" has both \"{}\" and \"Mass\"; leave out one.", body.name, wanted);
-  check_input(by_density || by_mass || body.script,
-              "The solid \"{}\" has no mass; give \"{}\" or \"Mass\".", body.name, wanted);
-  if (by_mass)
-    return list.get<double>("Mass") / measure;
-  return by_density ? list.get<double>(wanted) : 0;
-}
-
-/// Mass, inertia and centre of mass; then the body's coordinates move to its reference point, whose
-/// old coordinates are returned.
-template <int dim>
-Point<dim> set_mass(RigidBodyConstants<dim>& body, const ParameterList& list) {
-  const MassProperties<dim> properties =
-      body.closed ? volume_properties(body.surface) : shell_properties(body.surface);
-  body.density = read_density(list, body, properties.measure);
-  body.volume = body.closed ? properties.measure : 0;
-  if (!body.script) {
-    body.mass = body.density * properties.measure;
-    body.inertia = body.density * properties.inertia;
-  }
-  Point<dim> reference = properties.centroid;
-  if (list.isParameter("Pivot"))
-    reference = vector_value<dim>(list, "Pivot");
-  body.center_of_mass = properties.centroid - reference;
-  for (auto& vertex : body.surface.vertices)
-    vertex -= reference;
-  return reference;
 }
 
 template <int dim>
@@ -123,9 +72,7 @@ ParameterList rigid_body_parameters() {
           "Motions held at zero, along and about the axes of space.");
   set_choices(list, "Locked", dof_names<dim>());
   declare_motion<dim>(list);
-  declare_vector(list, "Force", ParameterArray<double>(dim, 0.0), dim,
-                 "Constant load at the centre of mass, besides gravity [N] (2D: [N/m]).");
-  declare_rotation<dim>(list, "Torque", "Constant load, in axes of space [N m] (2D: [N]).");
+  declare_load<dim>(list);
   declare(list, "Seen by Fluid", true,
           "Fluid and contact meet the body's surface. Without, the body is a mass that joints and "
           "attached nodes connect, as a bone inside flesh.");
@@ -145,13 +92,7 @@ RigidBody<dim> read_rigid_body(const std::string& name, const ParameterList& lis
       make_body_geometry<dim>(list.sublist("Geometry"), grid_spacing, name);
   body.surface = std::move(geometry.surface);
   body.closed = geometry.closed;
-  body.force = vector_value<dim>(list, "Force");
-  body.torque = rotation_value<dim>(list, "Torque");
-  check_input(
-      body.dynamic() || (body.force.norm() == 0 && body.torque.norm() == 0),
-      "The solid \"{}\" follows a script, so a \"Force\" or \"Torque\" cannot move it; leave "
-      "them out, or make its motion \"dynamic\".",
-      name);
+  body.load = read_load<dim>(list, name, body.dynamic());
   body.seen_by_fluid = list.get<bool>("Seen by Fluid");
   body.restitution = list.get<double>("Restitution");
   body.friction = list.get<double>("Friction");

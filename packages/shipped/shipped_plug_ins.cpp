@@ -4,6 +4,7 @@
 #include "contact/register_contact.hpp"
 #include "cutcell/register_flux.hpp"
 #include "deformable/register_deformable.hpp"
+#include "lines/register_lines.hpp"
 #include "liquid/register_interfaces.hpp"
 #include "mac/register_mac.hpp"
 #include "mixedface/register_mixed_face.hpp"
@@ -30,6 +31,7 @@ Registries<dim> shipped_plug_ins(std::shared_ptr<const InterfaceRegistry<dim>> i
   registries.domains["mac"] = domain_parameters<dim>;
   register_rigid<dim>(registries.solids);
   register_deformable<dim>(registries.solids);
+  register_lines<dim>(registries.solids);
   register_mixed_face<dim>(registries.couplings);
   register_flux<dim>(registries.couplings);
   register_articulated<dim>(registries);

@@ -43,8 +43,8 @@ CouplingChoice automatic_coupling(const SurfaceSnapshot<dim>& surface, double sp
   bool any_closed = false;
   for (std::size_t s = 0; s < surface.solids().size(); ++s) {
     const SolidDescription& solid = surface.solids()[s];
-    if (!solid.closed)
-      continue;
+    if (!solid.closed || solid.simplex_begin == solid.simplex_end)
+      continue;  // a shell, or a body that the fluid does not see
     any_closed = true;
     if (!solid.rigid)
       return {whole, fmt::format("\"{}\" deforms", solid.name)};

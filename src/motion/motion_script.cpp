@@ -1,11 +1,11 @@
 #include "motion/motion_script.hpp"
 
-#include <boost/math/interpolators/cubic_hermite.hpp>
 #include <cmath>
 #include <vector>
 
 #include "base/errors.hpp"
 #include "motion/list_values.hpp"
+#include "motion/timed_table.hpp"
 
 namespace lockstep {
 
@@ -27,7 +27,7 @@ ParameterList sinusoid_schema() {
 template <int dim>
 ParameterList table_schema() {
   ParameterList table;
-  declare_required<ParameterArray<double>>(table, "Times", "Ascending times [s], two or more.");
+  declare_times(table);
   declare_optional<ParameterArray<double>>(
       table, "Displacements",
       "Displacement [m]: a point for each time, one after another. Absent: none.");
@@ -56,61 +56,6 @@ MotionScript<dim> sinusoid(const ParameterList& list, const std::string& where) 
   };
 }
 
-/// Slopes at which the cubic between two points never leaves their interval (Fritsch and Butland).
-std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y) {
-  const std::size_t n = x.size();
-  std::vector<double> slopes(n, 0.0);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double before = x[i] - x[i - 1], after = x[i + 1] - x[i];
-    const double left = (y[i] - y[i - 1]) / before, right = (y[i + 1] - y[i]) / after;
-    if (left * right > 0) {
-      const double a = 2 * after + before, b = after + 2 * before;
-      slopes[i] = (a + b) / (a / left + b / right);
-    }
-  }
-  slopes.front() = (y[1] - y[0]) / (x[1] - x[0]);
-  slopes.back() = (y[n - 1] - y[n - 2]) / (x[n - 1] - x[n - 2]);
-  return slopes;
-}
-
-/// One coordinate of a table: constant outside it.
-class TableColumn {
- public:
-  TableColumn(const std::vector<double>& times, const std::vector<double>& values)
-      : first_(times.front()),
-        last_(times.back()),
-        curve_(std::vector<double>(times), std::vector<double>(values),
-               monotone_slopes(times, values)) {}
-
-  double value(double time) const { return curve_(std::min(std::max(time, first_), last_)); }
-  double slope(double time) const { return time < first_ || time > last_ ? 0 : curve_.prime(time); }
-
- private:
-  double first_, last_;
-  boost::math::interpolators::cubic_hermite<std::vector<double>> curve_;
-};
-
-/// Columns of the rows "name" of a table; empty if it is absent.
-std::vector<TableColumn> read_columns(const ParameterList& list, const std::string& column,
-                                      const std::vector<double>& times, int n_components,
-                                      const std::string& where) {
-  std::vector<TableColumn> columns;
-  if (!list.isParameter(column))
-    return columns;
-  const auto& rows = list.get<ParameterArray<double>>(column);
-  const std::size_t wanted = times.size() * static_cast<std::size_t>(n_components);
-  check_input(static_cast<std::size_t>(rows.size()) == wanted,
-              "In \"{}\", \"{}\" has {} numbers, but {} times need {}.", where, column, rows.size(),
-              times.size(), wanted);
-  for (int c = 0; c < n_components; ++c) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < times.size(); ++i)
-      values.push_back(rows[i * n_components + c]);
-    columns.emplace_back(times, values);
-  }
-  return columns;
-}
-
 template <int dim>
 AngularVector<dim> table_axis(const ParameterList& list, const std::string& where) {
   if constexpr (dim == 2) {
@@ -124,11 +69,7 @@ AngularVector<dim> table_axis(const ParameterList& list, const std::string& wher
 
 template <int dim>
 MotionScript<dim> table(const ParameterList& list, const std::string& where) {
-  const std::vector<double> times = list.get<ParameterArray<double>>("Times").toVector();
-  check_input(times.size() >= 2, "In \"{}\", \"Times\" needs two or more times.", where);
-  for (std::size_t i = 1; i < times.size(); ++i)
-    check_input(times[i] > times[i - 1], "In \"{}\", \"Times\" must ascend, but {} follows {}.",
-                where, times[i], times[i - 1]);
+  const std::vector<double> times = read_times(list, where);
   const auto displacements = read_columns(list, "Displacements", times, dim, where);
   const auto angles = read_columns(list, "Angles", times, 1, where);
   check_input(!displacements.empty() || !angles.empty(),

@@ -81,6 +81,17 @@ std::string parse_word(const std::string& text) {
   return text;
 }
 
+/// The next comma that is no argument's: "min(x, 1), 2".
+std::size_t next_comma(const std::string& text, std::size_t start) {
+  int depth = 0;
+  for (std::size_t i = start; i < text.size(); ++i) {
+    depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
+    if (text[i] == ',' && depth <= 0)
+      return i;
+  }
+  return std::string::npos;
+}
+
 template <typename T, typename Parse>
 ParameterEntry parse_array(const std::string& text, Parse parse) {
   check_input(text.size() >= 2 && text.front() == '{' && text.back() == '}',
@@ -90,7 +101,7 @@ ParameterEntry parse_array(const std::string& text, Parse parse) {
               shortened(text));
   ParameterArray<T> array;
   for (std::size_t start = 0; !inside.empty() && start != std::string::npos;) {
-    const std::size_t comma = inside.find(',', start);
+    const std::size_t comma = next_comma(inside, start);
     try {
       array.push_back(parse(trimmed(inside.substr(start, comma - start))));
     } catch (const InputError& error) {

@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "base/signals.hpp"
 #include "interfaces/limited_torques.hpp"
+#include "interfaces/line_tensions.hpp"
 #include "interfaces/liquid.hpp"
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
@@ -51,6 +52,19 @@ constexpr double long_step = 20;
 /// a power cut without regret, and enough that writing them does not count.
 constexpr double seconds_between_checkpoints = 600;
 
+/// Returns the states of the lines of all models that have any.
+template <int dim>
+std::vector<LineState> line_states(const SolidSystem<dim>& solids) {
+  std::vector<LineState> all;
+  for (int m = 0; m < solids.n_models(); ++m) {
+    if (const auto* model = side_of<LineTensions>(solids.model(m))) {
+      for (const LineState& line : model->line_states())
+        all.push_back(line);
+    }
+  }
+  return all;
+}
+
 /// Thrown between the stages of a long step after a signal, on all ranks.
 struct StepStopped {
   int signal;
@@ -68,7 +82,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
       log_(log),
       components_(build_components<dim>(registries, scene, options.scene_file, comm)),
       tables_(comm, options.output_directory, components_.fluid->liquid(),
-              components_.solids->joints() != nullptr),
+              components_.solids->joints() != nullptr, !line_states(*components_.solids).empty()),
       observers_(registries.observers, scene.sublist("Observers"), comm, options.output_directory,
                  scene_options_.time.start),
       frames_(comm, options.output_directory,
@@ -315,6 +329,8 @@ void Simulation<dim>::write_rows() {
     tables_.append_joints(step_, *report_, coordinates, limited);
     summary_.count(coordinates, limited);
   }
+  if (const std::vector<LineState> lines = line_states(*components_.solids); !lines.empty())
+    tables_.append_lines(step_, *report_, lines);
   if (!observers_.empty()) {
     ScopedStage stage(timers_, "observers");
     observers_.observe(step_, view(states), finished());

@@ -23,6 +23,12 @@ std::set<std::string> tables_of(const ParameterList& scene) {
   std::set<std::string> names;
   if (has_entries(scene, "Joints"))
     names.insert("joints.csv");
+  if (has_entries(scene, "Solids")) {
+    for (const auto& [name, entry] : entries(scene.sublist("Solids"))) {
+      if (scene.sublist("Solids").sublist(name).isParameter("Solids"))  // a line
+        names.insert("lines.csv");
+    }
+  }
   if (has_entries(scene, "Observers")) {
     for (const auto& [name, entry] : entries(scene.sublist("Observers")))
       names.insert(name + ".csv");

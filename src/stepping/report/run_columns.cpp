@@ -4,6 +4,7 @@
 
 #include "base/errors.hpp"
 #include "interfaces/constraint.hpp"
+#include "interfaces/line_tensions.hpp"
 #include "interfaces/solid.hpp"
 #include "stepping/report/step_report.hpp"
 
@@ -286,6 +287,21 @@ std::vector<TableColumn<JointRow<dim>>> joint_columns() {
   return columns;
 }
 
+template <int dim>
+std::vector<TableColumn<LineRow<dim>>> line_columns() {
+  using Row = LineRow<dim>;
+  Columns<Row> columns = step_and_time<Row>();
+  append<Row>(
+      columns,
+      {{{"name", "1", "of the line"}, [](const Row& row) { return row.line.name; }},
+       {{"span", "m", "distance of its ends"}, [](const Row& row) { return row.line.span; }},
+       {{"first_tension", "N", "at its first end; below 0 it pushes"},
+        [](const Row& row) { return row.line.tension[0]; }},
+       {{"second_tension", "N", "at its second end"},
+        [](const Row& row) { return row.line.tension[1]; }}});
+  return columns;
+}
+
 template std::vector<TableColumn<HistoryRow<2>>> history_columns(
     const std::optional<LiquidColumns>&);
 template std::vector<TableColumn<HistoryRow<3>>> history_columns(
@@ -294,5 +310,7 @@ template std::vector<TableColumn<BodyRow<2>>> body_columns();
 template std::vector<TableColumn<BodyRow<3>>> body_columns();
 template std::vector<TableColumn<JointRow<2>>> joint_columns();
 template std::vector<TableColumn<JointRow<3>>> joint_columns();
+template std::vector<TableColumn<LineRow<2>>> line_columns();
+template std::vector<TableColumn<LineRow<3>>> line_columns();
 
 }  // namespace lockstep

@@ -9,6 +9,7 @@
 namespace lockstep {
 
 struct JointState;
+struct LineState;
 template <int dim>
 struct SolidState;
 template <int dim>
@@ -41,15 +42,23 @@ struct JointRow {
   bool limited;  ///< its torque was the largest
 };
 
+/// Source of a row of lines.csv: a step and a line.
+template <int dim>
+struct LineRow {
+  long long step;
+  const StepReport<dim>& report;
+  const LineState& line;
+};
+
 /// Parts of the LiquidReport of a liquid with a free surface that have columns.
 struct LiquidColumns {
   std::vector<std::string> watches;  ///< names
   bool gas = false, drops = false;
 };
 
-/// Columns of history.csv, bodies.csv and joints.csv: what is written, and what the formulas of a
-/// study may name. Those of a liquid with a free surface stand at the end, then those of its
-/// watched places, of trapped gas and of drops.
+/// Columns of history.csv, bodies.csv, joints.csv and lines.csv: what is written, and what the
+/// formulas of a study may name. Those of a liquid with a free surface stand at the end, then those
+/// of its watched places, of trapped gas and of drops.
 template <int dim>
 std::vector<TableColumn<HistoryRow<dim>>> history_columns(
     const std::optional<LiquidColumns>& liquid);
@@ -57,5 +66,7 @@ template <int dim>
 std::vector<TableColumn<BodyRow<dim>>> body_columns();
 template <int dim>
 std::vector<TableColumn<JointRow<dim>>> joint_columns();
+template <int dim>
+std::vector<TableColumn<LineRow<dim>>> line_columns();
 
 }  // namespace lockstep

@@ -1,6 +1,7 @@
 #include "stepping/report/run_tables.hpp"
 
 #include "interfaces/constraint.hpp"
+#include "interfaces/line_tensions.hpp"
 #include "interfaces/solid.hpp"
 
 namespace lockstep {
@@ -17,11 +18,13 @@ std::optional<LiquidColumns> liquid_columns(const LiquidFluid<dim>* liquid) {
 
 template <int dim>
 RunTables<dim>::RunTables(const Communicator& comm, const std::string& directory,
-                          const LiquidFluid<dim>* liquid, bool with_joints)
+                          const LiquidFluid<dim>* liquid, bool with_joints, bool with_lines)
     : history_(comm, directory + "/history.csv", history_columns<dim>(liquid_columns(liquid))),
       bodies_(comm, directory + "/bodies.csv", body_columns<dim>()) {
   if (with_joints)
     joints_.emplace(comm, directory + "/joints.csv", joint_columns<dim>());
+  if (with_lines)
+    lines_.emplace(comm, directory + "/lines.csv", line_columns<dim>());
 }
 
 template <int dim>
@@ -30,6 +33,8 @@ void RunTables<dim>::start() {
   bodies_.start();
   if (joints_)
     joints_->start();
+  if (lines_)
+    lines_->start();
 }
 
 template <int dim>
@@ -38,6 +43,8 @@ void RunTables<dim>::check_columns() const {
   bodies_.check_columns();
   if (joints_)
     joints_->check_columns();
+  if (lines_)
+    lines_->check_columns();
 }
 
 template <int dim>
@@ -46,6 +53,8 @@ void RunTables<dim>::resume(long long step) {
   bodies_.resume(step);
   if (joints_)
     joints_->resume(step);
+  if (lines_)
+    lines_->resume(step);
 }
 
 template <int dim>
@@ -67,6 +76,15 @@ void RunTables<dim>::append_joints(long long step, const StepReport<dim>& report
   for (std::size_t k = 0; k < joints.size(); ++k)
     rows.push_back({step, report, joints[k], limited[k] != 0});
   joints_->append(rows);
+}
+
+template <int dim>
+void RunTables<dim>::append_lines(long long step, const StepReport<dim>& report,
+                                  const std::vector<LineState>& lines) {
+  std::vector<LineRow<dim>> rows;
+  for (const LineState& line : lines)
+    rows.push_back({step, report, line});
+  lines_->append(rows);
 }
 
 template <int dim>

@@ -10,14 +10,14 @@
 
 namespace lockstep {
 
-/// history.csv (a row a step), bodies.csv (a row a step and solid), and joints.csv (a row a step
-/// and coordinate) if there are joints.
+/// history.csv (a row a step), bodies.csv (a row a step and solid), and, if there are any,
+/// joints.csv (a row a step and coordinate) and lines.csv (a row a step and line).
 template <int dim>
 class RunTables {
  public:
   /// `liquid`: not null if all steps report a liquid with a free surface.
   RunTables(const Communicator& comm, const std::string& directory, const LiquidFluid<dim>* liquid,
-            bool with_joints);
+            bool with_joints, bool with_lines);
   void start();
   /// Throws InputError if tables that are there have other columns.
   void check_columns() const;
@@ -29,6 +29,9 @@ class RunTables {
   /// `limited`: by coordinate, whether its torque was the largest.
   void append_joints(long long step, const StepReport<dim>& report,
                      const std::vector<JointState>& joints, const std::vector<char>& limited);
+  /// Likewise. Only with lines.
+  void append_lines(long long step, const StepReport<dim>& report,
+                    const std::vector<LineState>& lines);
   /// The row of a step in history.csv, by column. Local.
   std::vector<std::pair<std::string, HistoryValue>> history_row(long long step,
                                                                 const StepReport<dim>& report,
@@ -38,6 +41,7 @@ class RunTables {
   RowTable<HistoryRow<dim>> history_;
   RowTable<BodyRow<dim>> bodies_;
   std::optional<RowTable<JointRow<dim>>> joints_;
+  std::optional<RowTable<LineRow<dim>>> lines_;
 };
 
 /// The numbers of the progress line.

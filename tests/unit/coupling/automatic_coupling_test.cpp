@@ -52,6 +52,10 @@ TEST(AutomaticCoupling, IsNotDeceivedByTheExtentOfACup) {
   EXPECT_EQ(choice(cup, 0.5).type, "mixed face");
 }
 
+TEST(AutomaticCoupling, KnowsNothingOfUnseenBodies) {
+  EXPECT_EQ(choice(SurfaceMesh<3>(), 1).reason, "no solid is closed");
+}
+
 TEST(AutomaticCoupling, LeavesShellsToWholeFaces) {
   EXPECT_EQ(choice(ball_surface<3>(1, 0.1), 0.1, false).reason, "no solid is closed");
 }

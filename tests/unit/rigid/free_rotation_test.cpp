@@ -157,5 +157,26 @@ TEST(FreeRotation, StepsUnderATorqueAreOfSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / half), 2, 0.2);
 }
 
+/// A hull with ballast whose own moments are those of a symmetric top, 2, 2 and 3 kg m^2, about a
+/// centre beside that of its box: the axis goes round the angular momentum L at the rate L / 2, and
+/// the centre of mass, not the centroid, flies straight on.
+TEST(FreeRotation, ABodyWithItsOwnInertiaPrecesses) {
+  auto b = body<3>(geometry("box", numbers("Size", "1, 2, 3")) + number("Mass", "12") +
+                   numbers("Center of Mass", "0.1, 0.3, -0.7") + numbers("Inertia", "2, 2, 3") +
+                   numbers("Velocity", "1, 0, 0") + numbers("Angular Velocity", "0.5, 0, 2"));
+  const Point<3> angular_momentum(1, 0, 6);
+  const double rate = angular_momentum.norm() / 2, dt = 0.01;
+  const Point<3> start = b.center(), axis = b.pose.orientation * Point<3>::UnitZ();
+  const double energy = kinetic_energy(b);
+  double time = 0;
+  for (int step = 0; step < 200; ++step, time += dt)
+    free_step(b, time, dt);
+  const Point<3> expected = Eigen::AngleAxisd(rate * time, angular_momentum.normalized()) * axis;
+  EXPECT_LE((b.pose.orientation * Point<3>::UnitZ() - expected).norm(), 1e-4);
+  EXPECT_LE((b.momentum.tail<3>() - angular_momentum).norm(), 1e-12);
+  EXPECT_LE((b.center() - start - Point<3>(time, 0, 0)).norm(), 1e-12);
+  EXPECT_NEAR(kinetic_energy(b), energy, 1e-5 * energy);
+}
+
 }  // namespace
 }  // namespace lockstep::test

@@ -30,6 +30,37 @@ TEST(RigidInput, Mass) {
   EXPECT_EQ(error<2>(disc + motion("static")), "no error");
 }
 
+TEST(RigidInput, OwnCentreAndInertia) {
+  const std::string ball = geometry("ball", number("Radius", "0.2")) + number("Mass", "1");
+  EXPECT_THAT(error<2>(disc + number("Density", "1") + numbers("Center of Mass", "0, 0.1")),
+              HasSubstr("has a \"Center of Mass\" of its own, but no \"Mass\""));
+  EXPECT_THAT(error<2>(ball + number("Inertia", "0")), HasSubstr("Inertia"));
+  EXPECT_THAT(error<2>(ball + number("Inertia", "1") + motion("static")),
+              HasSubstr("follows a script, so it has no \"Inertia\""));
+  EXPECT_THAT(error<3>(ball + numbers("Inertia", "1, 2")), HasSubstr("has 2 numbers"));
+  EXPECT_THAT(error<3>(ball + numbers("Inertia", "1, 2, 3.1")),
+              HasSubstr("larger than the sum of the others"));
+  EXPECT_THAT(error<3>(ball + numbers("Inertia", "1, 1, 1, 2, 0, 0")),
+              HasSubstr("has a principal moment of -1"));
+  EXPECT_EQ(error<3>(ball + numbers("Inertia", "1, 2, 3")), "no error");  // a flat plate
+}
+
+TEST(RigidInput, Loads) {
+  const std::string ball = disc + number("Mass", "1");
+  const auto load = [](const std::string& type, const std::string& content) {
+    return list("Load", text("Type", type) + content);
+  };
+  const std::string push = load("formula", texts("Forces", "2*x, sin(t)"));
+  EXPECT_EQ(error<2>(ball + push), "no error");
+  EXPECT_THAT(error<2>(ball + push + numbers("Force", "1, 0")), HasSubstr("leave these out"));
+  EXPECT_THAT(error<2>(disc + motion("static") + push), HasSubstr("cannot move it"));
+  EXPECT_THAT(error<2>(ball + load("formula", "")), HasSubstr("push nothing"));
+  EXPECT_THAT(error<2>(ball + load("formula", texts("Forces", "z, 0"))),
+              HasSubstr("body/Load/Forces: cannot evaluate \"z\""));
+  EXPECT_THAT(error<2>(ball + load("table", numbers("Times", "0, 1") + numbers("Forces", "1, 2"))),
+              HasSubstr("has 2 numbers, but 2 times need 4"));
+}
+
 TEST(RigidInput, Geometry) {
   const std::string mass = number("Mass", "1");
   EXPECT_THAT(error<2>(mass + geometry("ball", "")),

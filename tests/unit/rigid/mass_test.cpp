@@ -61,5 +61,37 @@ TEST(Mass, MatrixAboutAPivotGivesThePhysicalMomentum) {
   EXPECT_LE((velocity_of(b, b.pose.orientation, momentum) - velocity).norm(), 1e-13);
 }
 
+TEST(Mass, OwnCentreAndInertia) {
+  // A hull of mass 12 whose ballast lies low: its coordinates move to its own centre of mass.
+  const std::string hull = geometry("box", numbers("Size", "4, 2")) + number("Mass", "12") +
+                           numbers("Position", "1, 5") + number("Rotation", "1.5707963267948966");
+  const auto ballasted =
+      body<2>(hull + numbers("Center of Mass", "0.25, -0.5") + number("Inertia", "7"));
+  EXPECT_NEAR(ballasted.mass, 12, 1e-13);
+  EXPECT_NEAR(ballasted.density, 1.5, 1e-13);
+  EXPECT_NEAR(ballasted.volume, 8, 1e-13);
+  EXPECT_EQ(ballasted.inertia(0, 0), 7);
+  EXPECT_EQ(ballasted.arm(), Point<2>(0, 0));  // joints may connect it
+  EXPECT_LE((ballasted.center() - Point<2>(1.5, 5.25)).norm(), 1e-14);
+  // The centroid of its surface stays where it was.
+  const Point<2> centroid =
+      ballasted.pose.position +
+      ballasted.pose.orientation * volume_properties(ballasted.surface).centroid;
+  EXPECT_LE((centroid - Point<2>(1, 5)).norm(), 1e-14);
+  // Without an inertia it has that of an even spread, about its own centre.
+  EXPECT_NEAR(body<2>(hull + numbers("Center of Mass", "0.25, -0.5")).inertia(0, 0),
+              12 * (16. + 4.) / 12, 1e-12);
+
+  const std::string box = geometry("box", numbers("Size", "1, 2, 3")) + number("Mass", "2");
+  const auto moments = body<3>(box + numbers("Inertia", "3, 4, 5"));
+  EXPECT_EQ(moments.inertia, Inertia<3>(Point<3>(3, 4, 5).asDiagonal()));
+  const auto tensor = body<3>(box + numbers("Inertia", "3, 4, 5, 0.5, -0.25, 0.125") +
+                              numbers("Center of Mass", "0, 0.1, -1"));
+  Inertia<3> expected;
+  expected << 3, 0.5, -0.25, 0.5, 4, 0.125, -0.25, 0.125, 5;
+  EXPECT_EQ(tensor.inertia, expected);
+  EXPECT_LE((tensor.center() - Point<3>(0, 0.1, -1)).norm(), 1e-15);
+}
+
 }  // namespace
 }  // namespace lockstep::test

@@ -115,6 +115,65 @@ TEST(RigidBodies, ConstantLoadsActAtTheCentreOfMass) {
   EXPECT_NEAR(each[0].angular(0), impulse.angular(0), 1e-12);
 }
 
+std::string load(const std::string& type, const std::string& content) {
+  return list("Load", text("Type", type) + content);
+}
+
+/// Steps of one disc of mass 1 and inertia 1 without fluid; by step its place and velocity.
+std::vector<std::pair<double, double>> path_of(const std::string& load_list, double dt,
+                                               int n_steps) {
+  const auto bodies = model<2>({small_ball + number("Mass", "1") + number("Inertia", "1") +
+                                numbers("Position", "1, 0") + load_list});
+  std::vector<std::pair<double, double>> path;
+  for (int step = 0; step < n_steps; ++step) {
+    const double time = step * dt;
+    const auto velocity = make_vector(bodies->dof_map());
+    bodies->begin_step(time, dt);
+    bodies->explicit_momentum(time, dt / 2, *velocity);
+    bodies->move(*velocity, time, dt);
+    bodies->explicit_momentum(time, dt, *velocity);
+    bodies->set_velocity(*velocity);
+    path.emplace_back(bodies->states()[0].center_of_mass.x(), bodies->states()[0].velocity.x());
+  }
+  return path;
+}
+
+TEST(RigidBodies, ALoadThatGrowsLinearlyMovesABodyExactly) {
+  // x = 1 + t^3 / 3, v = t^2 under a force of 2 t.
+  for (const std::string& ramp :
+       {load("table", numbers("Times", "0, 1") + numbers("Forces", "0, 0, 2, 0")),
+        load("formula", texts("Forces", "2*t, 0"))}) {
+    const auto path = path_of(ramp, 0.1, 10);
+    EXPECT_NEAR(path.back().first, 1 + 1. / 3, 1e-14);
+    EXPECT_NEAR(path.back().second, 1, 1e-14);
+  }
+}
+
+TEST(RigidBodies, AForceByFormulaIsASpringOfSecondOrder) {
+  // x = cos 2 t; ten periods. Each step keeps x^2 + (1 - dt^2) v^2 / 4, or gains nothing.
+  const auto error = [](int n_steps) {
+    const auto path =
+        path_of(load("formula", texts("Forces", "-4*x, 0")), 10 * pi / n_steps, n_steps);
+    double largest = 0;
+    for (const auto& [x, v] : path)
+      largest = std::max(largest, std::abs(x));
+    EXPECT_LT(largest, 1 + 1e-12);
+    EXPECT_GT(*std::max_element(path.end() - n_steps / 10, path.end()), std::make_pair(0.999, 0.));
+    return std::hypot(path.back().first - 1, path.back().second / 2);
+  };
+  const double coarse = error(1000), fine = error(2000);
+  EXPECT_LT(fine, 1e-2);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1);
+}
+
+TEST(RigidBodies, ATorqueByFormulaTurnsABody) {
+  const auto bodies = model<2>({small_ball + number("Mass", "1") + numbers("Position", "3, 1") +
+                                load("formula", texts("Torques", "x + 10*y + 100*t"))});
+  const auto impulse = bodies->external_impulse(0.5, 0.3);  // before the body moves: at .5 + .2 s
+  EXPECT_NEAR(impulse.angular(0), 0.3 * (13 + 70), 1e-12);
+  EXPECT_EQ(impulse.linear, Point<2>(0, 0));
+}
+
 TEST(RigidBodies, MomentumOfVelocityIsThatOfTheBodies) {
   const auto bodies = model<3>(zoo());
   const auto momentum = make_vector(bodies->dof_map());

@@ -10,6 +10,7 @@
 
 #include "base/errors.hpp"
 #include "interfaces/constraint.hpp"
+#include "interfaces/line_tensions.hpp"
 #include "interfaces/solid.hpp"
 #include "output/atomic_file.hpp"
 #include "output/csv_line.hpp"
@@ -224,7 +225,7 @@ TYPED_TEST_SUITE(RunTablesOf, Dimensions);
 
 TYPED_TEST(RunTablesOf, HistorySaysOfEachColumnWhatItsNameSays) {
   constexpr int dim = TestFixture::dimension;
-  RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
+  RunTables<dim> tables(this->comm, this->folder, &this->liquid, false, false);
   tables.start();
   tables.append(7, this->report, {}, 0.5);
   Texts expected = expected_history(this->report);
@@ -240,7 +241,7 @@ TYPED_TEST(RunTablesOf, HistorySaysOfEachColumnWhatItsNameSays) {
 
 TYPED_TEST(RunTablesOf, AFullDomainHasNoColumnsOfALiquid) {
   constexpr int dim = TestFixture::dimension;
-  RunTables<dim> tables(this->comm, this->folder, nullptr, false);
+  RunTables<dim> tables(this->comm, this->folder, nullptr, false, false);
   tables.start();
   tables.append(7, this->report, {}, 0.5);
   EXPECT_THAT(this->rows("history.csv"), ::testing::ElementsAre(expected_history(this->report)));
@@ -248,7 +249,7 @@ TYPED_TEST(RunTablesOf, AFullDomainHasNoColumnsOfALiquid) {
 
 TYPED_TEST(RunTablesOf, APlaceThatIsNotWatchedIsNan) {
   constexpr int dim = TestFixture::dimension;
-  RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
+  RunTables<dim> tables(this->comm, this->folder, &this->liquid, false, false);
   tables.start();
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   this->report.liquid->watches[1] = {unknown, unknown};
@@ -260,7 +261,7 @@ TYPED_TEST(RunTablesOf, APlaceThatIsNotWatchedIsNan) {
 
 TYPED_TEST(RunTablesOf, AFluidThatTellsLessThanItSaidIsRefused) {
   constexpr int dim = TestFixture::dimension;
-  RunTables<dim> tables(this->comm, this->folder, &this->liquid, false);
+  RunTables<dim> tables(this->comm, this->folder, &this->liquid, false, false);
   tables.start();
   const LiquidReport whole = *this->report.liquid;
   this->report.liquid->watches.pop_back();
@@ -284,7 +285,7 @@ TYPED_TEST(RunTablesOf, BodiesHaveTheirOwnStatesAndImpulses) {
   }
   states[0].name = "Ball";
   states[1].name = "Disc";
-  RunTables<dim> tables(this->comm, this->folder, nullptr, false);
+  RunTables<dim> tables(this->comm, this->folder, nullptr, false, false);
   tables.start();
   const auto& of_fluid = this->report.hydrodynamic_impulse;
   this->report.contact_impulse = {of_fluid[1], of_fluid[0]};
@@ -309,11 +310,24 @@ TYPED_TEST(RunTablesOf, BodiesHaveTheirOwnStatesAndImpulses) {
   }
 }
 
+TYPED_TEST(RunTablesOf, LinesSayOfEachColumnWhatItsNameSays) {
+  RunTables<TestFixture::dimension> tables(this->comm, this->folder, nullptr, false, true);
+  tables.start();
+  tables.append_lines(7, this->report, {{"Rope", 1, {2, 3}}});
+  EXPECT_THAT(this->rows("lines.csv"),
+              ::testing::ElementsAre(Texts{{"step", "7"},
+                                           {"time", text_of(this->report.time)},
+                                           {"name", "Rope"},
+                                           {"span", "1"},
+                                           {"first_tension", "2"},
+                                           {"second_tension", "3"}}));
+}
+
 TYPED_TEST(RunTablesOf, JointsSayOfEachColumnWhatItsNameSays) {
   constexpr int dim = TestFixture::dimension;
   JointState slide{"Sleeve", 2, 1, 2, 3, 4, 5, 6, 8, true, false};
   JointState hinge{"Hinge", 0, 11, 12, 13, 14, 15, 16, 18, false, true};
-  RunTables<dim> tables(this->comm, this->folder, nullptr, true);
+  RunTables<dim> tables(this->comm, this->folder, nullptr, true, false);
   tables.start();
   tables.append_joints(7, this->report, {slide, hinge}, {0, 1});
   const std::string time = text_of(this->report.time);
