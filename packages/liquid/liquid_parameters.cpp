@@ -267,10 +267,10 @@ void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
         "scalars yet; leave one of them out.",
         scalar);
   check_input(
-      fluid.get<int>("Order in Time") == 1,
+      fluid.get<int>("Order in Time") != 2,
       "\"Order in Time\" 2 and \"Free Surface\" do not go together: pressures act at the new "
       "surface, which moves with the old velocity, so that waves keep their height; an "
-      "advection velocity from the middle of the step would damp them. Leave the order at 1.");
+      "advection velocity from the middle of the step would damp them. Leave the order out.");
   for (int axis = 0; axis < dim; ++axis)
     check_input(
         !periodic[axis] || gravity[axis] == 0,

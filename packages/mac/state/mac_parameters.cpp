@@ -41,11 +41,12 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
                  "third order, damps least, within the range of the 4 samples around along each "
                  "axis. Any step is stable with all; near surfaces all are semi-lagrangian.");
   declare_between(
-      list, "Order in Time", 1, 1, 2,
+      list, "Order in Time", 0, 0, 2,
       "Of advection and all else together. 1: as in the paper, advection knows nothing of pressure "
       "and forces. 2: what they did in the last step is averaged along the rays (trapezoidal rule) "
       "and the advection velocity is taken in the middle of the step; with maccormack, errors fall "
-      "with h^2 where the flow is smooth, at the cost of memory for 4 velocity fields.");
+      "with h^2 where the flow is smooth, at the cost of memory for 4 velocity fields. 0: 2 where "
+      "fluid fills its domain, 1 with a free surface, which knows no second order.");
   declare_at_least(
       list, "Thermal Expansion", 0.0, 0.0,
       "Boussinesq coefficient beta: fluid of temperature T feels -beta (T - T0) g, where T0 "
@@ -76,6 +77,8 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid) {
   parameters.forces.smoke_weight = fluid.get<double>("Smoke Weight");
   parameters.advection = advection_schemes().at(fluid.get<std::string>("Advection"));
   parameters.order_in_time = fluid.get<int>("Order in Time");
+  if (parameters.order_in_time == 0)
+    parameters.order_in_time = fluid.isSublist("Free Surface") ? 1 : 2;
   check_input(parameters.forces.expansion == 0 || fluid.isSublist("Temperature"),
               "In \"Fluid\", \"Thermal Expansion\" is {} but the fluid has no temperature; add the "
               "list \"Temperature\".",
