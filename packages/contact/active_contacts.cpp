@@ -181,7 +181,7 @@ int ContactProblem<dim>::solve(ImpulseSolver<dim>& solver) {
 template <int dim>
 bool ContactProblem<dim>::follows_impacts() const {
   const auto& solids = shapes_.solids();
-  return phase_ == ContactPhase::position &&
+  return phase_ == ContactPhase::position && !leaves_impacts_ &&
          std::any_of(solids.begin(), solids.end(),
                      [](const SolidDescription& solid) { return !solid.rigid; });
 }
@@ -218,6 +218,20 @@ int ContactProblem<dim>::stop_impacts(ImpulseSolver<dim>& solver) const {
 }
 
 template <int dim>
+std::vector<HeldRow> ContactProblem<dim>::held_rows(const ImpulseSolver<dim>& solver) const {
+  std::vector<HeldRow> held = solver.held_rows();
+  for (const Limit& one : limits_) {
+    const double impulse = one.number >= 0 ? solver.limit_impulse(one.number) : 0;
+    if (impulse <= 0)
+      continue;
+    HeldRow row{one.limit.terms, one.target, impulse, solver.limit_response(one.number), true};
+    solver.take_out_given(row);
+    held.push_back(std::move(row));
+  }
+  return held;
+}
+
+template <int dim>
 std::vector<std::pair<GlobalIndex, double>> ContactProblem<dim>::limit_impulses(
     const ImpulseSolver<dim>& solver) const {
   std::vector<std::pair<GlobalIndex, double>> all;
@@ -234,12 +248,14 @@ std::vector<std::pair<GlobalIndex, double>> ContactProblem<dim>::limit_impulses(
 template void ContactProblem<2>::leave_out_immovable(ImpulseSolver<2>&);
 template std::vector<Contact<2>> ContactProblem<2>::impacts_of(const std::vector<double>&) const;
 template bool ContactProblem<2>::follows_impacts() const;
+template std::vector<HeldRow> ContactProblem<2>::held_rows(const ImpulseSolver<2>&) const;
 template int ContactProblem<2>::solve(ImpulseSolver<2>&);
 template std::vector<std::pair<GlobalIndex, double>> ContactProblem<2>::limit_impulses(
     const ImpulseSolver<2>&) const;
 template void ContactProblem<3>::leave_out_immovable(ImpulseSolver<3>&);
 template std::vector<Contact<3>> ContactProblem<3>::impacts_of(const std::vector<double>&) const;
 template bool ContactProblem<3>::follows_impacts() const;
+template std::vector<HeldRow> ContactProblem<3>::held_rows(const ImpulseSolver<3>&) const;
 template int ContactProblem<3>::solve(ImpulseSolver<3>&);
 template std::vector<std::pair<GlobalIndex, double>> ContactProblem<3>::limit_impulses(
     const ImpulseSolver<3>&) const;

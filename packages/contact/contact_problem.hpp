@@ -30,6 +30,8 @@ class ContactProblem {
   /// one, too, which adds its own. Decisions that a coupled solve asks for one after the other
   /// would go to and fro between a bounce and none. Before `prepare`.
   void keep_bouncing(std::set<std::size_t>& bouncing) { bouncing_ = &bouncing; }
+  /// Leaves impacts along the way of soft surfaces to a later resolution; before `prepare`.
+  void leave_impacts() { leaves_impacts_ = true; }
   /// Contacts that act without friction, as if they touched, wherever they are; before `prepare`.
   void hold(std::vector<Contact<dim>> contacts) { held_ = std::move(contacts); }
   /// Finds the candidates; false if there is nothing to act on. If none is `expected`, most of the
@@ -42,6 +44,8 @@ class ContactProblem {
   double deepest_overlap() const;
   /// See `SurfacePath`: of the velocities given to `prepare`; empty where it does not matter.
   const std::vector<Point<dim>>& unheld() const { return unheld_; }
+  /// Returns the rows of contacts and joint limits that push, for a coupled solve to hold.
+  std::vector<HeldRow> held_rows(const ImpulseSolver<dim>& solver) const;
   /// Returns the impulses of joint limits, each with the dof of its coordinate.
   std::vector<std::pair<GlobalIndex, double>> limit_impulses(
       const ImpulseSolver<dim>& solver) const;
@@ -145,6 +149,7 @@ class ContactProblem {
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed
   std::vector<Candidate> candidates_;
   std::vector<Contact<dim>> held_;
+  bool leaves_impacts_ = false;
   std::set<std::size_t>* bouncing_ = nullptr;  ///< null: none is kept
   std::vector<Limit> limits_;
   std::map<Pair, std::vector<int>> pairs_;                      ///< candidates of each pair

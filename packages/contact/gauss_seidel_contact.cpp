@@ -26,12 +26,12 @@ RCP<const Vector> reactions_of(const SolidSystem<dim>& solids, const Vector& imp
   return reactions;
 }
 
-/// Options for rigid solids that answer with the fluid on them: a coupled solve compares its
-/// velocities with these to 1e-5 of what is asked, and takes the more solves the less these are
-/// settled (a pile of 64 discs that falls into water: 12.6 a step at the usual tolerance, 5.2 so).
-GaussSeidelOptions options_of_decisions(GaussSeidelOptions options) {
+/// Options for decisions: a coupled solve compares its velocities with these to 1e-5 of what is
+/// asked, and takes the more solves the less these are settled (a pile of 64 discs that falls into
+/// water: 12.6 a step at the usual tolerance, 5.2 so). `soft`: the contacts may be many.
+GaussSeidelOptions options_of_decisions(GaussSeidelOptions options, bool soft) {
   options.tolerance = std::min(options.tolerance, 1e-6);
-  options.sweeps = std::max(options.sweeps, 5000);
+  options.sweeps = std::max(options.sweeps, soft ? 1000 : 5000);
   return options;
 }
 
@@ -60,6 +60,7 @@ void GaussSeidelContact<dim>::begin_step(double time) {
   time_ = time;
   held_back_.clear();
   bouncing_.clear();
+  dense_mobility_.reset();
 }
 
 /// Positions go by velocities in the middle of the step, velocities are those at its end.
@@ -107,10 +108,20 @@ const SolidPairs& GaussSeidelContact<dim>::apart_among(
   return apart_;
 }
 
+/// Responses of dofs that contacts have asked for are kept from one decision to the next.
 template <int dim>
-ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& solids,
-                                                    ContactPhase phase, double dt, Vector& velocity,
-                                                    const ContactResponse& response) {
+Mobility<dim>& GaussSeidelContact<dim>::dense_mobility(const SolidSystem<dim>& solids,
+                                                       const ContactResponse& response) {
+  const RCP<const LinearOperator> inverse = response();
+  if (!dense_mobility_ || dense_mobility_->response() != inverse)
+    dense_mobility_ = std::make_unique<Mobility<dim>>(inverse_mass_of(solids), solids, inverse);
+  return *dense_mobility_;
+}
+
+template <int dim>
+ContactReport<dim> GaussSeidelContact<dim>::act(const SolidSystem<dim>& solids,
+                                                const Request& request, Vector& velocity) {
+  const auto& [phase, dt, response, decides] = request;
   ContactReport<dim> report;
   if (!solids.has_unknowns())
     return report;
@@ -121,11 +132,12 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   const auto bends = [](const SolidDescription& solid) {
     return !solid.rigid && !solid.prescribed;
   };
-  const bool decides = response && !solids.joints() &&
-                       std::none_of(shapes.solids().begin(), shapes.solids().end(), bends);
-  const GaussSeidelOptions options = decides ? options_of_decisions(options_) : options_;
+  const bool is_soft = std::any_of(shapes.solids().begin(), shapes.solids().end(), bends);
+  const GaussSeidelOptions options = decides ? options_of_decisions(options_, is_soft) : options_;
   ContactProblem<dim> problem(solids, shapes, walls_, options, apart_among(shapes.solids()),
                               spacing_, phase, dt);
+  if (decides)
+    problem.leave_impacts();
   if (decides && phase == ContactPhase::velocity)
     problem.keep_bouncing(bouncing_);
   if (phase == ContactPhase::position)
@@ -139,14 +151,14 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
   if (!acts)
     return report;
   report.deepest_overlap = problem.deepest_overlap();
-  // The response of rigid solids falls apart into blocks, as their masses do.
+  // The response of rigid solids and of nodes falls apart into blocks, as their masses do.
   const RCP<const CrsMatrix> blocks = decides ? assembled(response()) : RCP<const CrsMatrix>();
   const bool is_dense = response && blocks.is_null();
   const InverseMass of_blocks =
       blocks.is_null() ? InverseMass() : replicated_inverse(solids, *blocks);
   const InverseMass& inverse_mass = blocks.is_null() ? inverse_mass_of(solids) : of_blocks;
-  Mobility<dim> mobility =
-      is_dense ? Mobility<dim>(inverse_mass, solids, response()) : Mobility<dim>(inverse_mass);
+  Mobility<dim> of_rows(inverse_mass);
+  Mobility<dim>& mobility = is_dense ? dense_mobility(solids, response) : of_rows;
   ImpulseSolver<dim> solver(solids, shapes, mobility, given);
   report.iterations = problem.solve(solver);
   report.n_contacts = solver.n_contacts();
@@ -158,11 +170,11 @@ ContactReport<dim> GaussSeidelContact<dim>::resolve(const SolidSystem<dim>& soli
     const auto free = rcp(new Vector(*impulse, Teuchos::Copy));
     solids.reduction().drop_given(*free);
     report.impulse = free;
-    report.held = solver.held_rows();
+    report.held = problem.held_rows(solver);
     report.sliding = solver.sliding_impulse();
   }
   std::vector<double> resolved = solver.velocity();
-  if (phase == ContactPhase::position) {
+  if (phase == ContactPhase::position && !decides) {
     ZonedMotion<dim> zoned =
         join_impact_zones(solids, shapes, inverse_mass, dt, resolved, problem.unheld());
     report.n_crossings = zoned.n_left;

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -10,6 +11,7 @@
 #include "contact/bodies/inverse_mass.hpp"
 #include "contact/impacts/impacts.hpp"
 #include "contact/impulses/impulse_solver.hpp"
+#include "contact/impulses/mobility.hpp"
 #include "contact/search/contact_search.hpp"
 #include "interfaces/contact.hpp"
 
@@ -58,9 +60,23 @@ class GaussSeidelContact : public ContactModel<dim> {
   void begin_step(double time) override;
   using ContactModel<dim>::resolve;
   ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
-                             Vector& velocity, const ContactResponse& response) override;
+                             Vector& velocity, const ContactResponse& response) override {
+    return act(solids, {phase, dt, response, false}, velocity);
+  }
+  ContactReport<dim> decide(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
+                            Vector& velocity, const ContactResponse& response) override {
+    return act(solids, {phase, dt, response, true}, velocity);
+  }
 
  private:
+  struct Request {
+    ContactPhase phase;
+    double dt;
+    const ContactResponse& response;
+    bool decides;
+  };
+  ContactReport<dim> act(const SolidSystem<dim>& solids, const Request& request, Vector& velocity);
+  Mobility<dim>& dense_mobility(const SolidSystem<dim>& solids, const ContactResponse& response);
   void move_walls(ContactPhase phase, double dt);
   const InverseMass& inverse_mass_of(const SolidSystem<dim>& solids);
   const SolidPairs& apart_among(const std::vector<SolidDescription>& solids);
@@ -75,7 +91,8 @@ class GaussSeidelContact : public ContactModel<dim> {
   std::vector<std::string> numbers_;  ///< numbers of solids with these names
   RCP<const LinearOperator> known_inverse_;  ///< inverse of which `inverse_mass_` is the copy
   InverseMass inverse_mass_;
-  std::set<std::size_t> bouncing_;           ///< see ContactProblem::keep_bouncing
+  std::unique_ptr<Mobility<dim>> dense_mobility_;  ///< of the last response in this step
+  std::set<std::size_t> bouncing_;                 ///< see ContactProblem::keep_bouncing
   std::vector<FoundImpact<dim>> held_back_;  ///< by impact zones, in the positions of this step
   /// By phase, whether there was something to act on last time; results do not depend on it.
   std::array<bool, 2> acted_{};

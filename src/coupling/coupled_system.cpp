@@ -89,7 +89,8 @@ template <int dim>
 void CoupledSystem<dim>::subtract_given(double dt, const Reduction& constraints,
                                         Vector& row) const {
   if (!constraints.offset().is_null())
-    apply(*solids_.full_block(coupling_.added_mass(), dt), *constraints.offset(), row, -1, 1);
+    apply(*solids_.full_block(sum_of_both(coupling_.added_mass(), held_stiffness_), dt),
+          *constraints.offset(), row, -1, 1);
 }
 
 template <int dim>

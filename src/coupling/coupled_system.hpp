@@ -42,7 +42,8 @@ class CoupledSystem {
   }
   /// The row 2 of `right_hand_side` on all dofs, without b.
   RCP<Vector> lumped_momentum(const Vector& momentum) const;
-  /// Subtracts the part of a moving b from row 2: row -= C b for a step of dt. Collective.
+  /// Subtracts the part of a moving b from row 2: row -= C b for a step of dt, with what C holds.
+  /// Collective.
   void subtract_given(double dt, const Reduction& constraints, Vector& row) const;
 
   /// A sentence if sides, prescribed solids or what constraints give change the volume of fluid

@@ -15,11 +15,12 @@ class SolidSystem;
 /// A condition that active contacts put on the velocities: the sum of weights times dofs is
 /// `velocity`. A coupled solve holds it.
 struct HeldRow {
-  std::vector<std::pair<GlobalIndex, double>>
-      weights;          ///< by dof of the stack; the same on all ranks
-  double velocity = 0;  ///< [m/s]
-  double impulse = 0;   ///< found by the contact model [kg m/s]
-  double response = 0;  ///< velocity per impulse in the model's response [1/kg]
+  /// By dof of the stack, given ones left out, combinations by themselves; the same on all ranks.
+  std::vector<std::pair<GlobalIndex, double>> weights;
+  double velocity = 0;    ///< [m/s]
+  double impulse = 0;     ///< found by the contact model [kg m/s]
+  double response = 0;    ///< velocity per impulse in the model's response [1/kg]
+  bool is_limit = false;  ///< true for a limit of a joint
 };
 
 /// Result of one resolution of contacts.
@@ -36,8 +37,9 @@ struct ContactReport {
   /// Generalized reactions of constraints while contact acted, which no solve contains, as
   /// `Reduction::keep_reactions` leaves them. Null: there are none.
   RCP<const Vector> reactions;
-  /// Rows of contacts that push, normal ones and the tangential ones of what sticks, and the
-  /// generalized impulse, by dof, of the friction of what slides; if there was a `ContactResponse`.
+  /// Rows of contacts that push, normal ones and the tangential ones of what sticks, and of limits
+  /// that do, and the generalized impulse, by dof, of the friction of what slides; if there was a
+  /// `ContactResponse`.
   std::vector<HeldRow> held;
   std::vector<std::pair<GlobalIndex, double>> sliding;
   /// Impulses of joint limits, each with the dof of its coordinate; the same on all ranks.
@@ -75,6 +77,13 @@ class ContactModel : public PlugIn {
   ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
                              Vector& velocity) {
     return resolve(solids, phase, dt, velocity, {});
+  }
+  /// Decides which contacts push, and how, for a coupled solve to hold: as `resolve` with this
+  /// response, but to the accuracy that a solve compares with, and without what only the way of
+  /// soft surfaces asks for. Collective.
+  virtual ContactReport<dim> decide(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
+                                    Vector& velocity, const ContactResponse& response) {
+    return resolve(solids, phase, dt, velocity, response);
   }
 };
 

@@ -26,6 +26,11 @@ def scene(dimension, solids, coupling, level=.7, dry=(), step=.005, cells=32, gr
         "Contact": {"Tolerance": 1e-9}, "Time": {"End": 100., "Fixed Step": step}, "Output": {"Frames": False}, **more})
 
 
+def viscous(text):
+    density = 'name="Density" type="double" value="1000.0"/>'
+    return text.replace(density, density + '<Parameter name="Viscosity" type="double" value="0.5"/>', 1)
+
+
 def box(size, position, density, **more):
     return {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": size}, "Position": position, "Density": density, **more}
 
@@ -103,6 +108,35 @@ class RestInWater(unittest.TestCase):
             with self.subTest(coupling=coupling):
                 self.assert_rests(scene(2, solids, coupling, dry=(.5, .1)))
 
+    def assert_still(self, text, steps=40):
+        """Below 1e-6 of the speed of long waves in the tank, sqrt(g L), the fluid as well."""
+        bodies, history = self.run_scene(text, steps)
+        self.assertLess(max(abs(v) for name in ("vx", "vy") for v in column(bodies, name)), 1e-6 * G**.5)
+        self.assertLess(max(column(history, "fluid_kinetic_energy")), .5 * 700 * 1e-12 * G)
+        self.assertLess(max(column(history, "momentum_error")), 1e-13)
+
+    def test_links_lie_on_the_floor(self):
+        """A viscous fluid did not know of their contact, and stirred them at 1e-4 m/s. So it did a flap that lies at its limit."""
+        links = {"A": box((.2, .1), (.35, .05), 2000., Friction=.5), "B": box((.2, .1), (.6, .05), 2000., Friction=.5)}
+        pin = {"Pin": {"Type": "hinge", "Solids": ("A", "B"), "Point": (.475, .05)}}
+        flap = {"Flap": box((.4, .06), (.5, .3), 2000.)}
+        stop = {"Pin": {"Type": "hinge", "Solids": ("space", "Flap"), "Point": (.28, .3), "Limits": {"Lower": 0., "Upper": 1.}}}
+        for name, solids, joints in (("links", links, pin), ("flap", flap, stop)):
+            with self.subTest(name):
+                self.assert_still(viscous(scene(2, solids, "mixed face", Joints=joints)))
+
+    def test_soft_solids_lie_on_the_floor(self):
+        """A sheet on a box reported .46 m/s while it lay still; a stiff block crept, and ever faster."""
+        skin = .05 / 32  # half a thickness
+        sheet = {"Type": "cloth", "Surface Density": 30., "Young's Modulus": 1e5, "Thickness": .01, "Friction": .5,
+                 "Geometry": {"Shape": "sheet", "Size": (.3, .3), "Normal": "y"}, "Position": (.5, .1 + skin)}
+        block = {"Type": "deformable body", "Density": 2000., "Friction": .5, "Material": {"Young's Modulus": 1e9},
+                 "Geometry": {"Shape": "box", "Size": (.5, .1), "Mesh Spacing": .05}, "Position": (.5, .05 + skin)}
+        for name, solids in (("sheet", {"Box": box((.5, .1), (.5, .05), 2000., Friction=.5), "Sheet": sheet}), ("block", {"Block": block})):
+            for text in (scene(2, solids, "mixed face"), viscous(scene(2, solids, "mixed face"))):
+                with self.subTest(name):
+                    self.assert_still(text)
+
     def test_bodies_float_at_their_draft(self):
         """Upright, a box; turned, a square log of half the density of water, which lies with a corner down under tilted gravity."""
         for coupling in ("mixed face", "flux"):
@@ -118,9 +152,7 @@ class RestInWater(unittest.TestCase):
             del solid["Density"]
         text = scene(2, {"Raft": raft, "Load": load}, "mixed face", step=.01)
         self.assert_rests(text, steps=100)
-        density = 'name="Density" type="double" value="1000.0"/>'
-        viscous = text.replace(density, density + '<Parameter name="Viscosity" type="double" value="0.5"/>', 1)
-        for kind, scene_text, speed in (("viscous", viscous, 1e-5),
+        for kind, scene_text, speed in (("viscous", viscous(text), 1e-5),
                                         ("flux", scene(2, {"Raft": raft, "Load": load}, "flux", step=.01), 2e-3)):
             with self.subTest(kind):  # flux: cells of the waterline whose centres lie in the raft are not at rest
                 bodies, _ = self.run_scene(scene_text, 100)

@@ -67,6 +67,8 @@ class ContactShapes {
   /// replaced by the dofs that they are made of.
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                     VelocityRow<dim>& row) const;
+  /// True if a dof is a combination of others.
+  bool follows(GlobalIndex dof) const { return combinations_.count(dof) > 0; }
   /// The velocity of a point of a rigid solid that is not prescribed, with a surface or without.
   Point<dim> rigid_velocity(int solid, const Point<dim>& x,
                             const std::vector<double>& velocity) const;

@@ -71,19 +71,26 @@ bool ImpulseSolver<dim>::slides(const Row& row) const {
 }
 
 template <int dim>
+void ImpulseSolver<dim>::take_out_given(HeldRow& row) const {
+  Terms left;
+  for (const auto& [dof, weight] : row.weights) {
+    const int id = static_cast<int>(dof);
+    if (mobility_.is_held(id) && !shapes_.follows(dof))
+      row.velocity -= weight * velocity_[id];
+    else if (weight != 0)
+      left.emplace_back(dof, weight);
+  }
+  row.weights = std::move(left);
+}
+
+template <int dim>
 std::vector<HeldRow> ImpulseSolver<dim>::held_rows() const {
   std::vector<HeldRow> held;
   const auto add = [&](const Row& row, const Point<dim>& direction, double velocity, double impulse,
                        double response) {
-    HeldRow one{{}, velocity - direction.dot(row.prescribed), impulse, response};
-    for (int k = row.begin; k < row.end; ++k) {
-      const int dof = dof_of(jacobian_[k].id);
-      const double weight = jacobian_[k].coefficient.dot(direction);
-      if (mobility_.is_held(dof))
-        one.velocity -= weight * velocity_[dof];
-      else if (weight != 0)
-        one.weights.emplace_back(dof, weight);
-    }
+    HeldRow one{impulse_on_both(row, direction), velocity - direction.dot(row.of_given), impulse,
+                response};
+    take_out_given(one);
     held.push_back(std::move(one));
   };
   for (const Row& row : rows_) {
@@ -98,28 +105,29 @@ std::vector<HeldRow> ImpulseSolver<dim>::held_rows() const {
 
 template <int dim>
 typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::sliding_impulse() const {
-  Terms impulses;
+  HeldRow all;
   for (const Row& row : rows_) {
     if (row.normal_impulse <= 0 || !slides(row))
       continue;
-    const Point<dim> friction = row.tangents * row.tangent_impulse;
-    for (int k = row.begin; k < row.end; ++k)
-      if (const int dof = dof_of(jacobian_[k].id); !mobility_.is_held(dof))
-        impulses.emplace_back(dof, jacobian_[k].coefficient.dot(friction));
+    for (const auto& term : impulse_on_both(row, row.tangents * row.tangent_impulse))
+      all.weights.push_back(term);
   }
-  return impulses;
+  take_out_given(all);
+  return all.weights;
 }
 
 template int ImpulseSolver<2>::activate(int);
 template void ImpulseSolver<2>::find_response(const Row&, Compliance&, double&) const;
 template void ImpulseSolver<2>::extend_limits();
 template void ImpulseSolver<2>::find_velocity();
+template void ImpulseSolver<2>::take_out_given(HeldRow&) const;
 template std::vector<HeldRow> ImpulseSolver<2>::held_rows() const;
 template ImpulseSolver<2>::Terms ImpulseSolver<2>::sliding_impulse() const;
 template int ImpulseSolver<3>::activate(int);
 template void ImpulseSolver<3>::find_response(const Row&, Compliance&, double&) const;
 template void ImpulseSolver<3>::extend_limits();
 template void ImpulseSolver<3>::find_velocity();
+template void ImpulseSolver<3>::take_out_given(HeldRow&) const;
 template std::vector<HeldRow> ImpulseSolver<3>::held_rows() const;
 template ImpulseSolver<3>::Terms ImpulseSolver<3>::sliding_impulse() const;
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "contact/bodies/carried_point.hpp"
-
 namespace lockstep {
 
 namespace {
@@ -26,49 +24,29 @@ Eigen::Matrix<double, dim, dim - 1> tangents_of(const Point<dim>& normal) {
   }
   return tangents;
 }
-
-/// Calls f(corner, factor of its velocity) for the corners of a soft surface that carry x along.
-template <int dim, typename Function>
-void for_each_carrier(const ContactShapes<dim>& shapes, const SurfacePoint<dim>& point,
-                      const Point<dim>& x, const Function& f) {
-  const auto factors = carried_point<dim>(shapes.corners(point.simplex), point, x);
-  for (int k = 0; k < dim; ++k) {
-    if (factors[k].isZero(0))
-      continue;
-    SurfacePoint<dim> corner;
-    corner.simplex = point.simplex;
-    corner.barycentric[k] = 1;
-    f(corner, factors[k]);
-  }
-}
 }  // namespace
 
 template <int dim>
 ImpulseSolver<dim>::ImpulseSolver(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
                                   Mobility<dim>& mobility, std::vector<double> velocity)
     : system_(system), shapes_(shapes), mobility_(mobility), velocity_(std::move(velocity)) {
-  if (responds())
-    given_ = velocity_;
+  if (!responds())
+    return;
+  given_ = velocity_;
+  for (int number = 0; number < mobility_.n_active(); ++number)
+    active_.push_back(velocity_[mobility_.active_dof(number)]);
 }
 
 template <int dim>
-void ImpulseSolver<dim>::add_side(Row& row, int solid, const SurfacePoint<dim>& point,
-                                  const Point<dim>& x, double sign) {
-  using Factor = Eigen::Matrix<double, dim, dim>;
-  const SolidDescription& description = system_.solids()[solid];
-  if (description.prescribed) {
-    row.prescribed += sign * system_.prescribed_velocity(point, x);
+void ImpulseSolver<dim>::add_side(Row& row, const ContactSide<dim>& side, double sign) {
+  if (system_.solids()[side.solid].prescribed) {
+    row.of_given += sign * system_.prescribed_velocity(side.point, side.x);
     return;
   }
-  if (description.rigid) {
-    row.prescribed += sign * shapes_.constraint_error(point, x);
-    add_entries(row, point, x, sign * Factor::Identity());
-    return;
+  for (const auto& [point, factor] : carriers_of(shapes_, side)) {
+    row.prescribed += sign * factor * shapes_.constraint_error(point, side.x);
+    add_entries(row, point, side.x, sign * factor);
   }
-  for_each_carrier(shapes_, point, x, [&](const SurfacePoint<dim>& corner, const Factor& factor) {
-    row.prescribed += sign * factor * shapes_.constraint_error(corner, x);
-    add_entries(row, corner, x, sign * factor);
-  });
 }
 
 template <int dim>
@@ -144,11 +122,12 @@ typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& 
   row.solid_prescribed = solids[contact.solid].prescribed;
   row.other_prescribed = contact.other < 0 || solids[contact.other].prescribed;
   row.begin = static_cast<int>(jacobian_.size());
-  add_side(row, contact.solid, contact.point, contact.place(), 1);
+  add_side(row, solid_of(row), 1);
   if (contact.other >= 0)
-    add_side(row, contact.other, contact.other_point, contact.other_place(), -1);
+    add_side(row, other_of(row), -1);
   else
-    row.prescribed -= contact.wall_velocity;
+    row.of_given -= contact.wall_velocity;
+  row.prescribed += row.of_given;
   row.end = static_cast<int>(jacobian_.size());
   row.response_begin = row.response_end = static_cast<int>(response_.size());
   add_response(row);
@@ -311,37 +290,33 @@ Point<dim> ImpulseSolver<dim>::impulse(const Row& row) const {
 }
 
 template <int dim>
-void ImpulseSolver<dim>::add_side_impulse(int solid, const SurfacePoint<dim>& point,
-                                          const Point<dim>& x, const Point<dim>& impulse,
-                                          std::vector<double>& total) const {
-  const SolidDescription& description = system_.solids()[solid];
-  if (description.prescribed)
-    return;
-  VelocityRow<dim> row;
-  const auto add = [&](const SurfacePoint<dim>& at, const Point<dim>& pushed) {
-    system_.velocity_row(at, x, row);
-    for (std::size_t k = 0; k < row.dofs.size(); ++k)
-      total[row.dofs[k]] += row.coefficients[k].dot(pushed);
-  };
-  if (description.rigid) {
-    add(point, impulse);
-    return;
+ContactSide<dim> ImpulseSolver<dim>::solid_of(const Row& row) const {
+  return {row.contact.solid, row.contact.point, row.contact.place()};
+}
+
+template <int dim>
+ContactSide<dim> ImpulseSolver<dim>::other_of(const Row& row) const {
+  return {row.contact.other, row.contact.other_point, row.contact.other_place()};
+}
+
+/// Generalized, by dof of the surfaces.
+template <int dim>
+typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::impulse_on_both(
+    const Row& row, const Point<dim>& impulse) const {
+  Terms on_dofs = impulse_on(system_, shapes_, solid_of(row), impulse);
+  if (row.contact.other >= 0) {
+    const Terms on_other = impulse_on<dim>(system_, shapes_, other_of(row), -impulse);
+    on_dofs.insert(on_dofs.end(), on_other.begin(), on_other.end());
   }
-  for_each_carrier(shapes_, point, x, [&](const SurfacePoint<dim>& corner, const auto& factor) {
-    add(corner, factor.transpose() * impulse);
-  });
+  return on_dofs;
 }
 
 template <int dim>
 std::vector<double> ImpulseSolver<dim>::generalized_impulse() const {
   std::vector<double> total(velocity_.size());
-  for (const Row& row : rows_) {
-    const Point<dim> pushed = impulse(row);
-    add_side_impulse(row.contact.solid, row.contact.point, row.contact.place(), pushed, total);
-    if (row.contact.other >= 0)
-      add_side_impulse(row.contact.other, row.contact.other_point, row.contact.other_place(),
-                       -pushed, total);
-  }
+  for (const Row& row : rows_)
+    for (const auto& [dof, pushed] : impulse_on_both(row, impulse(row)))
+      total[dof] += pushed;
   std::vector<double> of_limits(responds() ? active_.size() : total.size(), 0);
   limits_.add_to(of_limits);
   for (std::size_t id = 0; id < of_limits.size(); ++id)

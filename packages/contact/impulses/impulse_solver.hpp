@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "contact/bodies/contact_side.hpp"
 #include "contact/impulses/limit_impulses.hpp"
 #include "contact/impulses/mobility.hpp"
 #include "contact/search/contact_search.hpp"
@@ -40,10 +41,13 @@ class ImpulseSolver {
   const std::vector<double>& velocity() const { return velocity_; }
   /// Impulse of the limit with this number: times the weights it acts on their dofs.
   double limit_impulse(int number) const { return limits_.impulse(number); }
+  double limit_response(int number) const { return limits_.response(number); }
   /// J^T impulses, by id: on the dofs of the surfaces themselves, combinations or not.
   std::vector<double> generalized_impulse() const;
   /// Rows of contacts that push, for a coupled solve to hold.
   std::vector<HeldRow> held_rows() const;
+  /// Moves given dofs from the weights of a row to its velocity.
+  void take_out_given(HeldRow& row) const;
   /// Impulses, by dof, of the friction of contacts that slide.
   Terms sliding_impulse() const;
   /// Impulse of walls and prescribed solids on the others.
@@ -58,9 +62,10 @@ class ImpulseSolver {
   using Tangents = Eigen::Matrix<double, dim, dim - 1>;
   struct Row {
     Contact<dim> contact;
-    int begin = 0, end = 0;                    ///< in `jacobian_`
-    int response_begin = 0, response_end = 0;  ///< in `response_`: M_S^-1 J^T, without a response
-    Point<dim> prescribed = Point<dim>::Zero();
+    int begin = 0, end = 0;                      ///< in `jacobian_`
+    int response_begin = 0, response_end = 0;    ///< in `response_`: M_S^-1 J^T, without a response
+    Point<dim> prescribed = Point<dim>::Zero();  ///< velocity that no impulse changes
+    Point<dim> of_given = Point<dim>::Zero();    ///< its part of prescribed solids and walls
     double target = 0, friction = 0;
     double normal_response = 0, tangent_response = 0;  ///< velocity per impulse [1/kg]
     bool solid_prescribed = false, other_prescribed = false;
@@ -83,8 +88,7 @@ class ImpulseSolver {
   Row row_of(const Contact<dim>& contact, double friction);
   void forget_last(const Row& row);
   LimitImpulses::Row row_of(const Terms& terms);
-  void add_side(Row& row, int solid, const SurfacePoint<dim>& point, const Point<dim>& x,
-                double sign);
+  void add_side(Row& row, const ContactSide<dim>& side, double sign);
   void add_entries(Row& row, const SurfacePoint<dim>& point, const Point<dim>& x,
                    const Eigen::Matrix<double, dim, dim>& factor);
   void add_response(Row& row);
@@ -92,11 +96,12 @@ class ImpulseSolver {
   void find_response(const Row& row, Compliance& compliance, double& of_parts) const;
   Point<dim> relative_velocity(const Row& row) const;
   void push(const Row& row, const Point<dim>& impulse);
-  void add_side_impulse(int solid, const SurfacePoint<dim>& point, const Point<dim>& x,
-                        const Point<dim>& impulse, std::vector<double>& total) const;
   double relax_normal(Row& row);
   double relax_friction(Row& row);
   bool slides(const Row& row) const;
+  ContactSide<dim> solid_of(const Row& row) const;
+  ContactSide<dim> other_of(const Row& row) const;
+  Terms impulse_on_both(const Row& row, const Point<dim>& impulse) const;
   Point<dim> impulse(const Row& row) const;
 
   const SolidSystem<dim>& system_;

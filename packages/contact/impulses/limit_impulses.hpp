@@ -21,6 +21,8 @@ class LimitImpulses {
   const Row& row(int number) const { return rows_[number]; }
   int size() const { return static_cast<int>(rows_.size()); }
   double impulse(int row) const { return impulses_[row]; }
+  /// Its value for a unit impulse along itself.
+  double response(int row) const { return matrix_(row, row); }
 
   /// Changes the velocities, and the impulses given so far, to those that meet all bounds: impulses
   /// only push, and only at bounds that are reached. Where bounds contradict one another, they may

@@ -70,7 +70,7 @@ CoupledSolution CoupledSolve<dim>::converge(const StepContext<dim>& context,
                                             const RCP<Vector>& momentum,
                                             const BlockVector* nearby) {
   CoupledSolution solution = solve(context, momentum, context.solve, nearby);
-  for (int n_solves = 1; improve(context, n_solves, solution); ++n_solves) {
+  for (int n_solves = 1; improve(context, n_solves, solution, *momentum); ++n_solves) {
     CoupledSolution next = solve(context, momentum, context.solve, &solution.unknowns);
     next.report.add_work(solution.report);
     solution = next;
@@ -83,7 +83,7 @@ CoupledSolution CoupledSolve<dim>::converge(const StepContext<dim>& context,
 /// about the motion that lowers it most under the pressure found. False: the solution stands.
 template <int dim>
 bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
-                                CoupledSolution& solution) {
+                                CoupledSolution& solution, Vector& momentum) {
   constexpr int most_searches = 3;
   auto& solids = *components_.solids;
   if (!solids.has_unknowns() || !solids.has_implicit_forces())
@@ -92,8 +92,7 @@ bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
   if (n_solves < options_.newton_iterations) {
     const RCP<const Vector> before = solids.explicit_momentum(context.step.begin, context.dt);
     solids.linearise(context.dt, velocity);
-    solution.momentum->update(1, *solids.explicit_momentum(context.step.begin, context.dt), -1,
-                              *before, 1);
+    momentum.update(1, *solids.explicit_momentum(context.step.begin, context.dt), -1, *before, 1);
     return true;
   }
   if (context.moves_positions)
@@ -101,7 +100,7 @@ bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
   solution.is_converged = is_settled(solids, context.dt, velocity);
   if (solution.is_converged || n_solves == options_.newton_iterations + most_searches)
     return false;
-  settle_motion<dim>(solids, nullptr, context, {}, velocity, velocity, *solution.momentum);
+  settle_motion<dim>(solids, nullptr, context, {}, velocity, velocity, momentum);
   return true;
 }
 
@@ -151,7 +150,7 @@ MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& co
   if (holds_contacts()) {
     if (!drag.is_null())
       momentum->update(1, *drag, 1);
-    MotionWithContacts<dim> held = solve_with_contacts(context, momentum);
+    MotionWithContacts<dim> held = converge_with_contacts(context, momentum);
     end.solution = held.solution;
     end.contact = held.contact;
     if (held.contact.n_contacts > 0)

@@ -18,6 +18,7 @@ struct MotionWithContacts {
   CoupledSolution solution;
   ContactReport<dim> contact;
   RCP<const Vector> contact_impulse{};  ///< generalized, of all contacts and limits; null: none
+  RCP<const Vector> free_velocity{};    ///< V without the contacts held, in their response R
 };
 
 /// Finds p̂ and V of Eq. 16 at frozen geometry, with implicit forces of solids, gas and contact.
@@ -40,10 +41,12 @@ class CoupledSolve {
   /// linearisation. Collective.
   CoupledSolution converge(const StepContext<dim>& context, const RCP<Vector>& momentum,
                            const BlockVector* nearby = nullptr);
-  /// True if contacts are part of the coupled solve: those of rigid bodies without joints, where no
-  /// fluid is closed in. Closed fluid locks a body that touches a wall, since rows of B end there;
-  /// then, and with soft solids and mechanisms, contact acts on V_S* alone. The same on all ranks.
+  /// True if contacts, and limits of joints, are part of the coupled solve: where no fluid is
+  /// closed in. Closed fluid locks a body that touches a wall, since rows of B end there; then
+  /// contact acts on V_S* alone. The same on all ranks.
   bool holds_contacts() const;
+  /// True if these contacts leave surfaces that may still pass through one another: soft ones.
+  bool leaves_impacts() const;
   /// Returns the contacts of the velocities that solids with `momentum` have if the fluid gives
   /// them what it gives at rest, in the response of `contact_response`. Collective.
   ContactReport<dim> expected_contacts(const StepContext<dim>& context, const Vector& momentum,
@@ -54,9 +57,18 @@ class CoupledSolve {
   /// without contacts the system holds none. Collective.
   void hold(const ContactReport<dim>& contacts, Vector& momentum);
   /// Solves for velocities that keep contacts (docs/method.md, "Contact in the coupled system"):
-  /// held as rows of C, for which the contact model decides. Collective.
+  /// held as rows of C, for which the contact model decides. `nearby`: see `solve`. Collective.
   MotionWithContacts<dim> solve_with_contacts(const StepContext<dim>& context,
-                                              const RCP<const Vector>& momentum);
+                                              const RCP<const Vector>& momentum,
+                                              const BlockVector* nearby = nullptr);
+  /// `solve_with_contacts` as `converge` does `solve`. Collective.
+  MotionWithContacts<dim> converge_with_contacts(const StepContext<dim>& context,
+                                                 const RCP<Vector>& momentum,
+                                                 const BlockVector* nearby = nullptr);
+  /// The reactions of constraints (`Reduction::keep_reactions`) to the contacts that a motion
+  /// holds, by their response R. Collective.
+  RCP<Vector> reactions_to_contacts(const StepContext<dim>& context,
+                                    const MotionWithContacts<dim>& motion) const;
   /// The end of the step. `drag`: viscous impulse on the solids; null: none. Throws SolveError if
   /// what is prescribed has no solution, but for what the grid makes of the solids' shapes.
   /// Collective.
@@ -72,9 +84,11 @@ class CoupledSolve {
               const RCP<const Vector>& reactions);
 
  private:
-  bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution);
+  bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution,
+               Vector& momentum);
   ContactReport<dim> contact_before_solve(const StepContext<dim>& context, Vector& momentum);
   RCP<Vector> impulse_at_rest(double dt) const;
+  RCP<const CrsMatrix> mass_of_fluid_near() const;
   void solve_held(const StepContext<dim>& context, const Vector& momentum,
                   const BlockVector* nearby, MotionWithContacts<dim>& motion);
   ContactReport<dim> compare(const StepContext<dim>& context, const ContactResponse& response,

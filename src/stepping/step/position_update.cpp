@@ -31,6 +31,15 @@ void drop_with_followers(const Reduction& reduction, const Vector& marks, Vector
   }
 }
 
+/// Adds what contact did to the velocities of a solve to what that held.
+template <int dim>
+void add_last(const ContactReport<dim>& last, ContactReport<dim>& contact) {
+  contact.n_contacts = std::max(contact.n_contacts, last.n_contacts);
+  contact.iterations += last.iterations;
+  contact.n_crossings = last.n_crossings;
+  contact.deepest_overlap = std::max(contact.deepest_overlap, last.deepest_overlap);
+}
+
 /// Closes the joints of a motion that was found with `correction`, by changing its velocity.
 ClosedFreeMotion closed_flight(ConstraintModel& joints, const StepTime& step,
                                const Vector& correction, const Vector& solved, Vector& velocity) {
@@ -63,8 +72,9 @@ void PositionUpdate<dim>::solve(const StepContext<dim>& context, const RCP<const
   const RCP<Vector> momentum = solid_forces_.momentum(context, correction).momentum;
   if (!drag.is_null())
     momentum->update(1, *drag, 1);
+  MotionWithContacts<dim> held;
   if (solve_.holds_contacts()) {
-    MotionWithContacts<dim> held = solve_.solve_with_contacts(context, momentum);
+    held = solve_.converge_with_contacts(context, momentum, nearby);
     found.solution = held.solution;
     found.path.contact = held.contact;
   } else {
@@ -74,11 +84,15 @@ void PositionUpdate<dim>::solve(const StepContext<dim>& context, const RCP<const
   found.path.report = found.solution.report;
   found.path.incompatibility = found.solution.incompatibility;
   if (solids.joints()) {
-    Vector given(*momentum, Teuchos::Copy);
+    Vector given(*found.solution.momentum, Teuchos::Copy);
     if (!found.solution.gas_momentum.is_null())
       given.update(1, *found.solution.gas_momentum, 1);
     found.joint_impulse = system_.reactions(context.dt, context.constraints, given,
                                             {found.solution.unknowns.pressure, found.velocity});
+    if (!held.contact.held.empty()) {
+      found.joint_impulse->update(-1, *solve_.reactions_to_contacts(context, held), 1);
+      found.solved = held.free_velocity;
+    }
   }
   found.swept = swept_rates(*components_.fluid, solids, *components_.coupling, *found.velocity);
 }
@@ -100,7 +114,7 @@ void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& fo
   sweep_volumes(rates_of_kind(found.swept, solids, true), solids, dt, *found.velocity);
   if (is_implicit)
     bound_sweep<dim>(solids, context.dt, as_solved, *found.velocity);
-  if (solids.joints())
+  if (solids.joints() && found.solved.is_null())
     found.solved = rcp(new Vector(*found.velocity, Teuchos::Copy));
   if (is_implicit) {
     const SettledMotion<dim> settled =
@@ -108,11 +122,12 @@ void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& fo
                            *found.velocity, *found.solution.momentum);
     found.velocity = settled.velocity;
     found.path.is_converged = settled.is_settled;
-    found.path.contact = settled.contact;
-  } else if (components_.contact && solids.has_unknowns() && !solve_.holds_contacts()) {
-    found.path.contact =
-        components_.contact->resolve(solids, ContactPhase::position, dt, *found.velocity,
-                                     joint_response<dim>(solids, context.dt));
+    add_last(settled.contact, found.path.contact);
+  } else if (components_.contact && solids.has_unknowns() &&
+             (!solve_.holds_contacts() || solve_.leaves_impacts())) {
+    add_last(components_.contact->resolve(solids, ContactPhase::position, dt, *found.velocity,
+                                          joint_response<dim>(solids, context.dt)),
+             found.path.contact);
   }
 }
 

@@ -39,6 +39,8 @@ Support gathered_support(const Vector& impulse, const Vector& change, const Vect
 void SecantResponse::learn(const Vector& impulse, const Vector& change) {
   constexpr std::size_t most_dofs = 96;
   constexpr double round_off = 1e-12;
+  if (assembled(current_).is_null())
+    return;
   Vector answer(change.getMap());
   apply(*current_, impulse, answer);
   const Support support = gathered_support(impulse, change, answer);

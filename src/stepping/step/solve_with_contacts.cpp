@@ -59,24 +59,68 @@ std::vector<double> values_of(const std::vector<HeldRow>& rows, const Vector& ve
   return values;
 }
 
-/// Impulses that the contacts of a solve have given: J^T l~ with l~ = l - K (J V - b). Collective.
-template <int dim>
-RCP<Vector> impulse_of(const ContactReport<dim>& contacts, const Vector& velocity,
-                       const SolidSystem<dim>& solids) {
-  const auto impulse = make_vector(solids.map());
-  add_to(contacts.sliding, 1, *impulse);
-  const std::vector<double> values = values_of(contacts.held, velocity, solids.comm());
-  for (std::size_t r = 0; r < values.size(); ++r) {
-    const HeldRow& row = contacts.held[r];
-    add_to(row.weights, row.impulse - stiffness_of(row) * (values[r] - row.velocity), *impulse);
-  }
-  return impulse;
+/// Impulses that held rows have given in a solve: l~ = l - K (J V - b). Collective.
+std::vector<double> impulses_of(const std::vector<HeldRow>& rows, const Vector& velocity,
+                                const Communicator& comm) {
+  std::vector<double> impulses = values_of(rows, velocity, comm);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    impulses[k] = rows[k].impulse - stiffness_of(rows[k]) * (impulses[k] - rows[k].velocity);
+  return impulses;
 }
 
-RCP<const Vector> difference(const Vector& a, const Vector& b) {
+/// Puts the impulses J^T l~ that the contacts of a solve have given into their report, and what of
+/// them are limits'. Collective.
+template <int dim>
+void report_impulses(const Vector& velocity, const SolidSystem<dim>& solids,
+                     ContactReport<dim>& contacts) {
+  const auto impulse = make_vector(solids.map());
+  add_to(contacts.sliding, 1, *impulse);
+  contacts.limit_impulses.clear();
+  const std::vector<double> impulses = impulses_of(contacts.held, velocity, solids.comm());
+  for (std::size_t k = 0; k < impulses.size(); ++k) {
+    const HeldRow& row = contacts.held[k];
+    add_to(row.weights, impulses[k], *impulse);
+    for (const auto& [dof, weight] : row.weights)
+      if (row.is_limit)
+        contacts.limit_impulses.emplace_back(dof, impulses[k] * weight);
+  }
+  contacts.impulse = impulse;
+  contacts.external_impulse = solids.momentum(*impulse);
+  contacts.reactions = Teuchos::null;  // the solve has them
+}
+
+/// Largest block of the mass of solids that joints tie together.
+template <int dim>
+int largest_block(const SolidSystem<dim>& solids) {
+  return std::max(largest_dense_block, solids.joints()->largest_block());
+}
+
+RCP<Vector> difference(const Vector& a, const Vector& b) {
   const auto result = rcp(new Vector(a, Teuchos::Copy));
   result->update(-1, b, 1);
   return result;
+}
+
+/// A row by the unknowns, on the ranks that own them. Collective.
+template <int dim>
+std::vector<std::pair<GlobalIndex, double>> by_unknowns(
+    const SolidSystem<dim>& solids, const std::vector<std::pair<GlobalIndex, double>>& weights) {
+  if (!solids.reduction().has_combinations())
+    return weights;
+  Vector row(solids.map());
+  add_to(weights, 1, row);
+  solids.reduction().restrict(row);
+  std::vector<std::pair<GlobalIndex, double>> result;
+  const auto values = row.getData();
+  for (int local = 0; local < values.size(); ++local)
+    if (values[local] != 0)
+      result.emplace_back(row.getMap()->getGlobalElement(local), values[local]);
+  return result;
+}
+
+RCP<const Vector> on_unknowns(const Reduction& constraints, const RCP<Vector>& impulse) {
+  constraints.restrict(*impulse);
+  return impulse;
 }
 
 double largest(const std::vector<double>& values) {
@@ -89,13 +133,29 @@ double largest(const std::vector<double>& values) {
 
 template <int dim>
 bool CoupledSolve<dim>::holds_contacts() const {
-  const auto& solids = *components_.solids;
-  const auto is_soft = [](const SolidDescription& solid) {
+  return components_.contact && components_.solids->has_unknowns() && !system_.locks_solids();
+}
+
+template <int dim>
+bool CoupledSolve<dim>::leaves_impacts() const {
+  const auto& solids = components_.solids->solids();
+  return std::any_of(solids.begin(), solids.end(), [](const SolidDescription& solid) {
     return !solid.rigid && !solid.prescribed;
-  };
-  return components_.contact && solids.has_unknowns() && !solids.joints() &&
-         std::none_of(solids.solids().begin(), solids.solids().end(), is_soft) &&
-         !system_.locks_solids();
+  });
+}
+
+template <int dim>
+MotionWithContacts<dim> CoupledSolve<dim>::converge_with_contacts(const StepContext<dim>& context,
+                                                                  const RCP<Vector>& momentum,
+                                                                  const BlockVector* nearby) {
+  MotionWithContacts<dim> motion = solve_with_contacts(context, momentum, nearby);
+  for (int n_solves = 1; improve(context, n_solves, motion.solution, *momentum); ++n_solves) {
+    MotionWithContacts<dim> next =
+        solve_with_contacts(context, momentum, &motion.solution.unknowns);
+    next.solution.report.add_work(motion.solution.report);
+    motion = next;
+  }
+  return motion;
 }
 
 template <int dim>
@@ -106,16 +166,27 @@ RCP<Vector> CoupledSolve<dim>::impulse_at_rest(double dt) const {
   return impulse;
 }
 
+/// The mass that R has beside M_S: of the fluid on solids, as a matrix on the stack.
+template <int dim>
+RCP<const CrsMatrix> CoupledSolve<dim>::mass_of_fluid_near() const {
+  if (const auto* coupling = side_of<HydrostaticCoupling<dim>>(*components_.coupling))
+    return coupling->mass_with_fluid(*components_.solids);
+  return components_.coupling->added_mass();
+}
+
 template <int dim>
 ContactResponse CoupledSolve<dim>::contact_response(double dt) const {
   return [this, dt, response = RCP<const LinearOperator>()]() mutable {
     if (response.is_null()) {
       const auto& solids = *components_.solids;
-      RCP<const CrsMatrix> with_fluid = components_.coupling->added_mass();
-      if (const auto* coupling = side_of<HydrostaticCoupling<dim>>(*components_.coupling))
-        with_fluid = coupling->mass_with_fluid(solids);
-      response = exact_inverse(solids.solid_block(with_fluid, dt),
-                               "solids in contact with the fluid on them");
+      const std::string name = "solids in contact with the fluid on them";
+      const auto block = solids.solid_block(mass_of_fluid_near(), dt);
+      // A mechanism is one block, as the contact model has its mass.
+      response =
+          solids.joints()
+              ? as_operator(
+                    block_diagonal_inverse(assembled(block), largest_block(solids), name).inverse)
+              : exact_inverse(block, name);
     }
     return response;
   };
@@ -128,7 +199,7 @@ ContactReport<dim> CoupledSolve<dim>::decide(const StepContext<dim>& context,
   const ContactPhase phase =
       context.moves_positions ? ContactPhase::position : ContactPhase::velocity;
   ContactReport<dim> report =
-      components_.contact->resolve(*components_.solids, phase, context.step.dt, velocity, response);
+      components_.contact->decide(*components_.solids, phase, context.step.dt, velocity, response);
   soften(context.dt, report.held);
   return report;
 }
@@ -146,7 +217,7 @@ void CoupledSolve<dim>::soften(double dt, std::vector<HeldRow>& rows) const {
   const auto of_dofs = mobility->getData();
   std::vector<double> own(rows.size(), 0);
   for (std::size_t k = 0; k < rows.size(); ++k)
-    for (const auto& [dof, weight] : rows[k].weights)
+    for (const auto& [dof, weight] : by_unknowns(solids, rows[k].weights))
       if (const int local = mobility->getMap()->getLocalElement(dof); local >= 0)
         own[k] += weight * weight * of_dofs[local];
   sum_over_ranks(solids.comm(), own);
@@ -161,7 +232,7 @@ ContactReport<dim> CoupledSolve<dim>::expected_contacts(const StepContext<dim>& 
                                                         const ContactResponse& response) {
   const auto& solids = *components_.solids;
   Vector velocity(*solids.velocity(), Teuchos::Copy), given(momentum, Teuchos::Copy);
-  apply(*solids.mass(), velocity, given, -1, 1);
+  apply(*solids.full_block(Teuchos::null, context.dt), velocity, given, -1, 1);
   given.update(1, *impulse_at_rest(context.dt), 1);
   context.constraints.restrict(given);
   apply(*response(), given, velocity, 1, 1);
@@ -208,11 +279,9 @@ void CoupledSolve<dim>::solve_held(const StepContext<dim>& context, const Vector
   hold(motion.contact, *pushed);
   motion.solution = solve(context, pushed, context.solve, nearby);
   const auto& solids = *components_.solids;
-  const RCP<const Vector> impulse = impulse_of(motion.contact, *motion.solution.velocity, solids);
+  report_impulses(*motion.solution.velocity, solids, motion.contact);
   motion.solution.momentum = rcp(new Vector(momentum, Teuchos::Copy));
-  motion.solution.momentum->update(1, *impulse, 1);
-  motion.contact.impulse = impulse;
-  motion.contact.external_impulse = solids.momentum(*impulse);
+  motion.solution.momentum->update(1, *motion.contact.impulse, 1);
 }
 
 /// Decides anew about V - R^-1 J^T l~, and returns the contacts found. The residual of `motion`
@@ -222,20 +291,23 @@ template <int dim>
 ContactReport<dim> CoupledSolve<dim>::compare(const StepContext<dim>& context,
                                               const ContactResponse& response,
                                               MotionWithContacts<dim>& motion, double& scale) {
-  Vector free(*motion.solution.velocity, Teuchos::Copy);
-  Vector reduced(*motion.contact.impulse, Teuchos::Copy);
-  context.constraints.restrict(reduced);
-  apply(*response(), reduced, free, -1, 1);
-  context.constraints.expand(free);
-  Vector decided(free, Teuchos::Copy);
+  const auto free = rcp(new Vector(*motion.solution.velocity, Teuchos::Copy));
+  if (!motion.contact.held.empty()) {
+    Vector reduced(*motion.contact.impulse, Teuchos::Copy);
+    context.constraints.restrict(reduced);
+    apply(*response(), reduced, *free, -1, 1);
+    context.constraints.expand(*free);
+  }
+  motion.free_velocity = free;
+  Vector decided(*free, Teuchos::Copy);
   ContactReport<dim> next = decide(context, response, decided);
-  free.update(1, decided, -1);
+  const RCP<const Vector> stopped = difference(decided, *free);
   decided.update(-1, *motion.solution.velocity, 1);
   const auto& comm = components_.solids->comm();
   motion.contact.residual = std::max(largest(values_of(motion.contact.held, decided, comm)),
                                      largest(values_of(next.held, decided, comm)));
   scale = std::max(context.dt * components_.fluid->gravity().norm(),
-                   largest(values_of(next.held, free, comm)));
+                   largest(values_of(next.held, *stopped, comm)));
   return next;
 }
 
@@ -250,7 +322,8 @@ ContactReport<dim> CoupledSolve<dim>::compare(const StepContext<dim>& context,
 /// of the last solves counts.
 template <int dim>
 MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext<dim>& context,
-                                                               const RCP<const Vector>& momentum) {
+                                                               const RCP<const Vector>& momentum,
+                                                               const BlockVector* nearby) {
   std::optional<SecantResponse> learned;
   const ContactResponse response = [&, first = contact_response(context.dt)]() {
     if (!learned)
@@ -261,12 +334,13 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
   held.contact = expected_contacts(context, *momentum, response);
   RCP<const Vector> last_impulse, last_velocity;
   for (int k = 1, last_gain = 1;; ++k) {
-    solve_held(context, *momentum, k > 1 ? &best.solution.unknowns : nullptr, held);
+    solve_held(context, *momentum, k > 1 ? &best.solution.unknowns : nearby, held);
     if (k > 1 && learned)
-      learned->learn(*difference(*held.contact.impulse, *last_impulse),
-                     *difference(*held.solution.velocity, *last_velocity));
+      learned->learn(
+          *on_unknowns(context.constraints, difference(*held.contact.impulse, *last_impulse)),
+          *difference(*held.solution.unknowns.solid, *last_velocity));
     last_impulse = held.contact.impulse;
-    last_velocity = held.solution.velocity;
+    last_velocity = held.solution.unknowns.solid;
     double scale = 0;
     ContactReport<dim> next = compare(context, response, held, scale);
     if (k == 1 || held.contact.residual < 0.5 * best.contact.residual)
@@ -283,8 +357,27 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
   }
 }
 
+template <int dim>
+RCP<Vector> CoupledSolve<dim>::reactions_to_contacts(const StepContext<dim>& context,
+                                                     const MotionWithContacts<dim>& motion) const {
+  const auto& solids = *components_.solids;
+  const auto reactions = rcp(new Vector(*motion.contact.impulse, Teuchos::Copy));
+  apply(*solids.full_block(mass_of_fluid_near(), context.dt),
+        *difference(*motion.solution.velocity, *motion.free_velocity), *reactions, 1, -1);
+  context.constraints.keep_reactions(*reactions);
+  return reactions;
+}
+
 template bool CoupledSolve<2>::holds_contacts() const;
 template bool CoupledSolve<3>::holds_contacts() const;
+template bool CoupledSolve<2>::leaves_impacts() const;
+template bool CoupledSolve<3>::leaves_impacts() const;
+template MotionWithContacts<2> CoupledSolve<2>::converge_with_contacts(const StepContext<2>&,
+                                                                       const RCP<Vector>&,
+                                                                       const BlockVector*);
+template MotionWithContacts<3> CoupledSolve<3>::converge_with_contacts(const StepContext<3>&,
+                                                                       const RCP<Vector>&,
+                                                                       const BlockVector*);
 template RCP<Vector> CoupledSolve<2>::impulse_at_rest(double) const;
 template RCP<Vector> CoupledSolve<3>::impulse_at_rest(double) const;
 template ContactResponse CoupledSolve<2>::contact_response(double) const;
@@ -296,8 +389,14 @@ template ContactReport<3> CoupledSolve<3>::expected_contacts(const StepContext<3
 template void CoupledSolve<2>::hold(const ContactReport<2>&, Vector&);
 template void CoupledSolve<3>::hold(const ContactReport<3>&, Vector&);
 template MotionWithContacts<2> CoupledSolve<2>::solve_with_contacts(const StepContext<2>&,
-                                                                    const RCP<const Vector>&);
+                                                                    const RCP<const Vector>&,
+                                                                    const BlockVector*);
 template MotionWithContacts<3> CoupledSolve<3>::solve_with_contacts(const StepContext<3>&,
-                                                                    const RCP<const Vector>&);
+                                                                    const RCP<const Vector>&,
+                                                                    const BlockVector*);
+template RCP<Vector> CoupledSolve<2>::reactions_to_contacts(const StepContext<2>&,
+                                                            const MotionWithContacts<2>&) const;
+template RCP<Vector> CoupledSolve<3>::reactions_to_contacts(const StepContext<3>&,
+                                                            const MotionWithContacts<3>&) const;
 
 }  // namespace lockstep
