@@ -9,8 +9,15 @@ namespace lockstep {
 /// Cells into solids over which phi is continued.
 inline constexpr int depth_in_solids = 4;
 
+/// A cell of a layer in a solid.
+struct LayerCell {
+  int cell;
+  unsigned char from;  ///< bit 2 axis + side: there is a neighbour of an earlier layer
+};
+
 /// Extrapolates phi linearly into solids over some cells: layer by layer, a cell takes the mean of
-/// the extrapolations from its neighbours along the axes that are seen from the fluid.
+/// the extrapolations from its neighbours along the axes that are seen from the fluid. One in a
+/// solid thinner than it takes that of the side whose fluid reaches into it.
 template <int dim>
 class Continuation {
  public:
@@ -25,10 +32,6 @@ class Continuation {
   void forget_layers() { surface_ = nullptr; }
 
  private:
-  struct LayerCell {
-    int cell;
-    unsigned char from;  ///< bit 2 axis + side: there is a neighbour of an earlier layer
-  };
   void find_layers(const MacDomain<dim>& domain, const SolidCells<dim>& solids);
   double led_to(const TiledGrid<dim>& grid, const SolidCells<dim>& solids, const CellField& phi,
                 int other, int axis, int side, int layer) const;
