@@ -15,15 +15,15 @@
 namespace lockstep {
 
 template <int dim>
-double FluxCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool,
+double FluxCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, bool parted,
                                         const SurfaceSnapshot<dim>& surface) const {
-  return open_fraction_of<dim>(volume, surface, options_.smallest_open_fraction, options_.weights);
+  return open_fraction_of<dim>(volume, parted, surface, options_);
 }
 
 template <int dim>
 Point<dim> FluxCoupling<dim>::open_center(const ControlVolume<dim>& volume,
                                           const SurfaceSnapshot<dim>& surface) const {
-  return open_center_of<dim>(volume, face_shares<dim>(volume, surface, options_.weights).all);
+  return open_center_of<dim>(volume, face_shares<dim>(volume, surface, options_).all);
 }
 
 namespace {
@@ -48,7 +48,7 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const ControlVolume<dim>& volume = volumes_[f];
     shares_.push_back(volume.touches_patch() ? shares_at_patch<dim>(volume, surface)
-                                             : face_shares<dim>(volume, surface, options_.weights));
+                                             : face_shares<dim>(volume, surface, options_));
     masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
     if (volume.only_gas())
       masses_[f] = 0;
@@ -267,8 +267,7 @@ void FluxCoupling<dim>::link_row(const ViscousCouplingTerm<dim>& link,
     ControlVolume<dim> volume = *link.remote_volume;
     volume.open_fraction = 0;
     row.position = volume.center;
-    add_to_row(face_shares<dim>(volume, *surface_, options_.weights).all, link.direction, solids,
-               row);
+    add_to_row(face_shares<dim>(volume, *surface_, options_).all, link.direction, solids, row);
   } else {
     row.position = link.end;
     add_to_row({{1, link.point, surface_->solid_of(link.point.simplex), link.end}}, link.direction,

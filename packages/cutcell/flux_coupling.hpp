@@ -6,26 +6,18 @@
 
 namespace lockstep {
 
-struct FluxOptions {
-  /// Faces less open than this are closed: their flux then belongs to the solid in both
-  /// neighbours, so that nothing is lost, and every pressure has a face of at least this size.
-  double smallest_open_fraction = 1e-4;
-  bool correct_buoyancy = true;  ///< see HydrostaticLoads
-  FaceWeights weights = FaceWeights::areas;
-};
-
 /// Coupling by the flux of the surface through cut cells (face fractions of Ng, Min and Gibou
 /// 2009): faces keep the open part of their area and of their fluid's mass, the closed part moves
 /// with the solid. B_cj is what dof j pushes out of cell c. Closed solids lump no fluid, so that
-/// C = M_S - dt D; only the normal velocity is tied. Thin shells, and parts of closed solids
-/// thinner than a cell, close their faces and lump the fluid as mixed faces do.
+/// C = M_S - dt D; only the normal velocity is tied. Thin shells, and walls thinner than a cell,
+/// close faces and lump the fluid as mixed faces do.
 template <int dim>
 class FluxCoupling : public FaceCoupling<dim> {
  public:
   explicit FluxCoupling(const FluxOptions& options) : options_(options) {}
 
   std::string name() const override { return "flux"; }
-  double open_fraction(const ControlVolume<dim>& volume, bool occluded,
+  double open_fraction(const ControlVolume<dim>& volume, bool parted,
                        const SurfaceSnapshot<dim>& surface) const override;
   bool cuts_cells() const override { return true; }
   Point<dim> open_center(const ControlVolume<dim>& volume,

@@ -26,24 +26,25 @@ enum class FaceWeights {
   volumes  ///< the volume of its dual cell inside them (Batty et al. 2007)
 };
 
+struct FluxOptions {
+  /// Faces less open than this are closed: their flux then belongs to the solid in both
+  /// neighbours, so that nothing is lost, and every pressure has a face of at least this size.
+  double smallest_open_fraction = 1e-4;
+  bool correct_buoyancy = true;  ///< see HydrostaticLoads
+  FaceWeights weights = FaceWeights::areas;
+};
+
 /// The flat box of a face [m].
 template <int dim>
 Box<dim> face_of(const ControlVolume<dim>& volume);
 
-/// Returns the solids of which a thin part lies between the two pressure points, in ascending
-/// order: shells, and closed solids that the segment enters and leaves again, unless both points
-/// see the same open place of the face (a tip). No face fraction sees those: they would leak. Faces
-/// that they block are mixed faces.
-template <int dim>
-std::vector<int> thin_between(const ControlVolume<dim>& volume,
-                              const SurfaceSnapshot<dim>& surface);
-
 /// Open part of a face: one minus the parts inside closed solids, rounded to a millionth, and
-/// closed altogether below `smallest`. A thin part between the pressure points
-/// closes it as well. Local.
+/// closed altogether below the smallest. A shell between the pressure points closes it as well, and
+/// so does a wall that parts its cells (`parted`). By volumes a face is open beside thick solids
+/// although its area is closed; walls thinner than two cells are not tight then. Local.
 template <int dim>
-double open_fraction_of(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
-                        double smallest, FaceWeights weights = FaceWeights::areas);
+double open_fraction_of(const ControlVolume<dim>& volume, bool parted,
+                        const SurfaceSnapshot<dim>& surface, const FluxOptions& options);
 
 /// Centroid of the open part of a partly open face: both together balance about the centre of the
 /// face, whatever was rounded.
@@ -55,13 +56,15 @@ Point<dim> open_center_of(const ControlVolume<dim>& volume,
 template <int dim>
 struct FaceShares {
   std::vector<FluxShare<dim>> all;  ///< shares of the closed part; weights sum to one
-  /// Shares of thin parts between the pressure points, as in the mixed-face coupling.
+  /// Of a face that is closed although its area is open, the shares of the shells between the
+  /// pressure points, or else of the solids in its dual cell, as in the mixed-face coupling.
   std::vector<SurfaceShare<dim>> of_thin;
-  double thin_part =
-      0;  ///< part of the face whose fluid moves with the thin parts and is lumped on them [1]
+  double thin_part = 0;  ///< open part of the area of such a face, whose fluid they carry [1]
 };
+/// A face beside a cell of a closed solid has that of all closed ones alone, so that rows of B sum
+/// to zero.
 template <int dim>
 FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
-                            FaceWeights weights = FaceWeights::areas);
+                            const FluxOptions& options);
 
 }  // namespace lockstep

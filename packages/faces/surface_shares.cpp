@@ -29,16 +29,6 @@ void add_share(std::vector<SurfaceShare<dim>>& shares, const SurfaceShare<dim>& 
   shares.push_back(share);
 }
 
-/// The closed solid whose inside is beside the volume and that alone, of closed ones, moves it; or
-/// -1.
-template <int dim>
-int solid_beside(const ControlVolume<dim>& volume) {
-  const auto& sides = volume.sides;
-  const int lower = sides[0].kind == SideKind::solid ? sides[0].solid : -1;
-  const int upper = sides[1].kind == SideKind::solid ? sides[1].solid : -1;
-  return lower >= 0 && upper >= 0 && lower != upper ? -1 : std::max(lower, upper);
-}
-
 template <int dim>
 SurfaceShare<dim> closest_share(const ControlVolume<dim>& volume,
                                 const SurfaceSnapshot<dim>& surface, int own) {
@@ -52,6 +42,14 @@ SurfaceShare<dim> closest_share(const ControlVolume<dim>& volume,
 }
 
 }  // namespace
+
+template <int dim>
+int solid_beside(const ControlVolume<dim>& volume) {
+  const auto& sides = volume.sides;
+  const int lower = sides[0].kind == SideKind::solid ? sides[0].solid : -1;
+  const int upper = sides[1].kind == SideKind::solid ? sides[1].solid : -1;
+  return lower >= 0 && upper >= 0 && lower != upper ? -1 : std::max(lower, upper);
+}
 
 template <int dim>
 std::vector<std::vector<SurfaceShare<dim>>> surface_shares(
@@ -245,6 +243,8 @@ bool any_prescribed(const std::vector<SolidDescription>& solids) {
                      [](const SolidDescription& solid) { return solid.prescribed; });
 }
 
+template int solid_beside<2>(const ControlVolume<2>&);
+template int solid_beside<3>(const ControlVolume<3>&);
 template std::vector<std::vector<SurfaceShare<2>>> surface_shares<2>(
     const std::vector<ControlVolume<2>>&, const SurfaceSnapshot<2>&, double);
 template void directed_row<2>(const SolidSystem<2>&, const SurfacePoint<2>&, const Point<2>&, int,

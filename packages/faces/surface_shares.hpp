@@ -20,6 +20,11 @@ struct SurfaceShare {
   std::shared_ptr<const LocalRotation<dim>> rotation{};
 };
 
+/// The closed solid whose cell is beside the volume, and which alone of closed ones moves it; or
+/// -1: there is none, or one on each side.
+template <int dim>
+int solid_beside(const ControlVolume<dim>& volume);
+
 /// The shares of every coupled control volume (Section 5): each simplex is clipped to the dual
 /// cell, thickened by `tolerance` (relative to its width), and weighs by its clipped area; a volume
 /// that clips nothing takes the closest simplex. Beside the inside of a closed solid other closed

@@ -6,6 +6,7 @@
 #include "liquid/gas/gas_faces.hpp"
 #include "liquid/surface/free_surface.hpp"
 #include "mac/tiles/moving_tiles.hpp"
+#include "staggered/state/cell_sides.hpp"
 #include "staggered/state/contact_patches.hpp"
 #include "staggered/state/covered_sides.hpp"
 #include "staggered/state/ghost_faces.hpp"
@@ -66,7 +67,8 @@ bool in_solid(const std::vector<CellState>& cells, int cell) {
 template <int dim>
 using OpenFractions = std::array<CellField, dim>;
 
-/// Asks a cut-cell rule about all faces near the surface. Walls and inflows open no cell.
+/// Asks a cut-cell rule about all faces near the surface, and closes those behind which a cell has
+/// its fluid on the other side of a thin wall. Walls and inflows open no cell.
 template <int dim>
 OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain,
                                        const OpenFractionRule<dim>& rule,
@@ -74,6 +76,7 @@ OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain,
   const TiledGrid<dim>& grid = domain.grid;
   const auto& cells = geometry.state.cells;
   geometry.unknown.assign(grid.n_stored_cells(), no_index);
+  const CellSides<dim> sides(domain, *geometry.state.surface, marks, cells);
   OpenFractions<dim> fractions;
   for (int axis = 0; axis < dim; ++axis) {
     fractions[axis].assign(grid.n_stored_cells(), 0.0);
@@ -84,12 +87,12 @@ OpenFractions<dim> find_open_fractions(const MacDomain<dim>& domain,
       if (face.at_side() && domain.boundary.side(axis, face.lower < 0 ? 0 : 1).prescribed())
         return;
       double& fraction = fractions[axis][cell];
+      const bool parted = !sides.joined(axis, cell);
       if (geometry.near_surface(cell))
-        fraction =
-            rule.open_fraction(control_volume(domain, geometry, axis, cell),
-                               (marks.occluded[cell] >> axis & 1) != 0, *geometry.state.surface);
-      else
-        fraction = in_solid<dim>(cells, face.lower) || in_solid<dim>(cells, face.upper) ? 0 : 1;
+        fraction = rule.open_fraction(control_volume(domain, geometry, axis, cell), parted,
+                                      *geometry.state.surface);
+      else if (!in_solid<dim>(cells, face.lower) && !in_solid<dim>(cells, face.upper) && !parted)
+        fraction = 1;
     });
     domain.halo.fill(fractions[axis]);
   }
@@ -218,7 +221,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   if (surface && !surface->empty()) {
     state.surface = surface;
     marks = mark_surface(domain, *surface, state.cells);
-    geometry.near = std::move(marks.near);
+    geometry.near = marks.near;
   }
   OpenFractions<dim> fractions;
   const bool cut = state.surface && rule.cuts_cells();
@@ -273,7 +276,7 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   geometry.coupled_volumes.insert(geometry.coupled_volumes.end(), gas_volumes.begin(),
                                   gas_volumes.end());
   if (state.surface)
-    add_contact_patches(domain, marks, geometry);
+    add_contact_patches(domain, geometry);
   complete_ghost_faces(domain, geometry);
   if (free_surface)
     set_distance_factor_to_air(domain, *free_surface, geometry);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "staggered/state/cell_sides.hpp"
+
 namespace lockstep {
 
 namespace {
@@ -31,6 +33,35 @@ class Neighbors {
 };
 
 constexpr char no_layer = 127;
+
+/// Of cells in a solid thinner than they, with fluid on both ends of an axis, keeps the neighbours
+/// whose fluid reaches into the cell if there are any: between water and air the mean of both sides
+/// would tell a pressure in the cut cell that it is in the air. Collective.
+template <int dim>
+void keep_those_that_reach_in(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
+                              std::vector<LayerCell>& cells) {
+  std::vector<LayerCell*> thin;
+  for (LayerCell& at : cells)
+    for (int axis = 0; axis < dim; ++axis)
+      if ((at.from >> 2 * axis & 3) == 3) {
+        thin.push_back(&at);
+        break;
+      }
+  if (max_all(domain.grid.comm(), thin.empty() ? 0. : 1.) == 0)
+    return;
+  const SurfaceMarks<dim> marks{solids.occluded, solids.near};
+  const CellSides<dim> sides(domain, *solids.state.surface, marks, solids.state.cells);
+  for (LayerCell* at : thin) {
+    unsigned char reach_in = 0;
+    for (int i = 0; i < 2 * dim; ++i) {
+      const int face = i % 2 == 0 ? at->cell : domain.grid.neighbor(at->cell, i / 2, 1);
+      if ((at->from >> i & 1) != 0 && sides.joined(i / 2, face))
+        reach_in |= 1 << i;
+    }
+    if (reach_in != 0)
+      at->from = reach_in;
+  }
+}
 }  // namespace
 
 template <int dim>
@@ -61,6 +92,8 @@ void Continuation<dim>::find_layers(const MacDomain<dim>& domain, const SolidCel
       else
         beyond.push_back(cell);
     }
+    if (layer == 1)
+      keep_those_that_reach_in(domain, solids, layers_[0]);
     for (const LayerCell& found : layers_[layer - 1])
       layer_of_[found.cell] = static_cast<char>(layer);
     domain.full_halo.fill(layer_of_);

@@ -9,10 +9,17 @@ namespace lockstep {
 /// Cells into solids over which phi is continued.
 inline constexpr int depth_in_solids = 4;
 
+/// A cell of a layer in a solid.
+struct LayerCell {
+  int cell;
+  unsigned char from;  ///< bit 2 axis + side: there is a neighbour of an earlier layer
+};
+
 /// Extrapolates phi linearly into solids over some cells: layer by layer, a cell takes the mean of
 /// the extrapolations from those of its neighbours along the axes, seen from the fluid, that are
 /// nearest to the interface. Farther ones, deep under an overhang, say how far the interface is in
-/// sight, not how far its plane is.
+/// sight, not how far its plane is. A cell in a solid thinner than it takes only those of the side
+/// whose fluid reaches into it.
 template <int dim>
 class Continuation {
  public:
@@ -27,10 +34,6 @@ class Continuation {
   void forget_layers() { surface_ = nullptr; }
 
  private:
-  struct LayerCell {
-    int cell;
-    unsigned char from;  ///< bit 2 axis + side: there is a neighbour of an earlier layer
-  };
   void find_layers(const MacDomain<dim>& domain, const SolidCells<dim>& solids);
   double led_to(const TiledGrid<dim>& grid, const SolidCells<dim>& solids, const CellField& phi,
                 int other, int axis, int side, int layer) const;

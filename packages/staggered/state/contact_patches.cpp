@@ -19,11 +19,9 @@ struct PatchFace {
 template <int dim>
 class PatchFinder {
  public:
-  PatchFinder(const MacDomain<dim>& domain, const SurfaceMarks<dim>& marks,
-              MacGeometry<dim>& geometry)
+  PatchFinder(const MacDomain<dim>& domain, MacGeometry<dim>& geometry)
       : domain_(domain),
         grid_(domain.grid),
-        marks_(marks),
         cells_(geometry.state.cells),
         surface_(*geometry.state.surface),
         geometry_(geometry) {}
@@ -67,18 +65,25 @@ class PatchFinder {
     if (is_outside(other)) {
       if (!domain_.boundary.side(axis, end).closed())
         return;
-      const int solid = surface_.inside(grid_.center(cell));
+      const int solid = solid_at(cell);
       if (solid >= 0 && !goes_through<dim>(domain_, surface_, solid, axis, end))
         faces_.push_back({cell, axis, end, -1, solid});
       return;
     }
-    const int upper = end == 1 ? other : cell;
-    if (cells_[other] != CellState::solid || (marks_.occluded[upper] >> axis & 1) == 0)
+    if (cells_[other] != CellState::solid)
       return;
-    const int solid = surface_.inside(grid_.center(cell));
-    const int neighbor = surface_.inside(grid_.center(other));
+    const int solid = solid_at(cell), neighbor = solid_at(other);
     if (solid >= 0 && neighbor >= 0 && solid != neighbor)
       faces_.push_back({cell, axis, end, other, solid});
+  }
+
+  /// The solid to which a cell belongs, looked up once.
+  int solid_at(int cell) {
+    constexpr int unknown = -2;
+    solid_at_.resize(grid_.n_stored_cells(), unknown);
+    if (solid_at_[cell] == unknown)
+      solid_at_[cell] = solid_of_cell<dim>(surface_, grid_.center(cell), grid_.spacing());
+    return solid_at_[cell];
   }
 
   /// Id of a face: from both of its cells and on all ranks the same.
@@ -190,10 +195,10 @@ class PatchFinder {
 
   const MacDomain<dim>& domain_;
   const TiledGrid<dim>& grid_;
-  const SurfaceMarks<dim>& marks_;
   const std::vector<CellState>& cells_;
   const SurfaceSnapshot<dim>& surface_;
   MacGeometry<dim>& geometry_;
+  std::vector<int> solid_at_;        ///< by cell
   std::vector<PatchFace> faces_;     ///< seen from cells of this rank
   std::vector<GlobalIndex> ids_;     ///< ids of all ranks' faces, sorted: their places are nodes
   std::vector<GlobalIndex> links_;   ///< pairs of nodes
@@ -206,15 +211,14 @@ class PatchFinder {
 }  // namespace
 
 template <int dim>
-void add_contact_patches(const MacDomain<dim>& domain, const SurfaceMarks<dim>& marks,
-                         MacGeometry<dim>& geometry) {
-  PatchFinder<dim> patches(domain, marks, geometry);
+void add_contact_patches(const MacDomain<dim>& domain, MacGeometry<dim>& geometry) {
+  PatchFinder<dim> patches(domain, geometry);
   patches.find();
   if (!patches.empty())
     patches.add_volumes();
 }
 
-template void add_contact_patches<2>(const MacDomain<2>&, const SurfaceMarks<2>&, MacGeometry<2>&);
-template void add_contact_patches<3>(const MacDomain<3>&, const SurfaceMarks<3>&, MacGeometry<3>&);
+template void add_contact_patches<2>(const MacDomain<2>&, MacGeometry<2>&);
+template void add_contact_patches<3>(const MacDomain<3>&, MacGeometry<3>&);
 
 }  // namespace lockstep

@@ -5,7 +5,7 @@ namespace lockstep {
 namespace {
 template <int dim>
 PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
-                                const Point<dim>& center) {
+                                const Point<dim>& center, double spacing) {
   PressureSide<dim> side;
   side.center = center;
   if (cell < 0)
@@ -14,7 +14,7 @@ PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
   side.kind = SideKind::unknown;
   if (geometry.state.cells[cell] == CellState::solid) {
     side.kind = SideKind::solid;
-    side.solid = geometry.state.surface->inside(center);
+    side.solid = solid_of_cell(*geometry.state.surface, center, spacing);
   } else if (geometry.state.cells[cell] == CellState::air) {
     side.kind = SideKind::air;
     side.bubble = geometry.bubble.empty() ? -1 : geometry.bubble[cell];
@@ -44,6 +44,27 @@ Point<dim> center_of_face(const MacDomain<dim>& domain, const MacGeometry<dim>& 
 }  // namespace
 
 template <int dim>
+int solid_of_cell(const SurfaceSnapshot<dim>& surface, const Point<dim>& center, double spacing) {
+  int nearest = surface.inside(center);
+  if (nearest >= 0)
+    return nearest;
+  const Point<dim> reach = Point<dim>::Constant(spacing);
+  std::vector<int> solids;
+  surface.solids_touching(Box<dim>(center - reach, center + reach), solids);
+  double least = 2 * spacing;
+  for (const int solid : solids) {
+    if (!surface.solids()[solid].closed)
+      continue;
+    const double distance = surface.closest_on_solid(center, solid).fraction;
+    if (distance < least) {
+      least = distance;
+      nearest = solid;
+    }
+  }
+  return nearest;
+}
+
+template <int dim>
 ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                   int axis, int cell) {
   const TiledGrid<dim>& grid = domain.grid;
@@ -59,8 +80,8 @@ ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometr
   const Point<dim> step = Point<dim>::Unit(axis) * half;
   const Point<dim> lower = face.lower < 0 ? volume.center : Point<dim>(volume.center - step);
   const Point<dim> upper = face.upper < 0 ? volume.center : Point<dim>(volume.center + step);
-  volume.sides = {pressure_side(geometry, face.lower, lower),
-                  pressure_side(geometry, face.upper, upper)};
+  volume.sides = {pressure_side(geometry, face.lower, lower, grid.spacing()),
+                  pressure_side(geometry, face.upper, upper, grid.spacing())};
   Point<dim> across = Point<dim>::Constant(half);
   across[axis] = 0;
   volume.box = Box<dim>(lower - across, upper + across);
@@ -69,6 +90,8 @@ ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometr
 
 template struct MacGeometry<2>;
 template struct MacGeometry<3>;
+template int solid_of_cell<2>(const SurfaceSnapshot<2>&, const Point<2>&, double);
+template int solid_of_cell<3>(const SurfaceSnapshot<3>&, const Point<3>&, double);
 template ControlVolume<2> control_volume<2>(const MacDomain<2>&, const MacGeometry<2>&, int, int);
 template ControlVolume<3> control_volume<3>(const MacDomain<3>&, const MacGeometry<3>&, int, int);
 

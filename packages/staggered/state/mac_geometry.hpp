@@ -73,6 +73,12 @@ bool MacGeometry<dim>::has_regular_faces(const CellStrip<dim>& row) const {
   return true;
 }
 
+/// The closed solid to which a cell without a pressure belongs, with its centre there: the one that
+/// holds the centre, or else, where it lies between solids, the nearest; -1 if there is none within
+/// a cell. Local.
+template <int dim>
+int solid_of_cell(const SurfaceSnapshot<dim>& surface, const Point<dim>& center, double spacing);
+
 /// The control volume of a face that is not prescribed; its cells must be stored. `open_fraction`
 /// and `seen_by_fluid` are left at 1 and true.
 template <int dim>

@@ -6,19 +6,6 @@
 namespace lockstep {
 
 namespace {
-/// Range of lattice coordinates [begin, end) of the stored tiles, within the domain.
-template <int dim>
-void stored_range(const TiledGrid<dim>& grid, Index<dim>& begin, Index<dim>& end) {
-  begin = grid.n_cells();
-  end.fill(0);
-  for (int tile = 0; tile < grid.n_tiles(); ++tile)
-    for (int a = 0; a < dim; ++a) {
-      const int first = grid.tile_begin(tile)[a];
-      begin[a] = std::min(begin[a], first);
-      end[a] = std::max(end[a], std::min(first + tile_width<dim>, grid.n_cells()[a]));
-    }
-}
-
 /// The cell whose centre is the first at or above a coordinate: the crossing lies in the segment
 /// from the centre before to this one, its end included.
 int cell_above(double coordinate, double lower, double spacing) {
@@ -149,6 +136,18 @@ void mark_near(const TiledGrid<dim>& grid, const SurfaceSnapshot<dim>& surface, 
 }  // namespace
 
 template <int dim>
+std::array<Index<dim>, 2> stored_range(const TiledGrid<dim>& grid) {
+  Index<dim> begin = grid.n_cells(), end{};
+  for (int tile = 0; tile < grid.n_tiles(); ++tile)
+    for (int a = 0; a < dim; ++a) {
+      const int first = grid.tile_begin(tile)[a];
+      begin[a] = std::min(begin[a], first);
+      end[a] = std::max(end[a], std::min(first + tile_width<dim>, grid.n_cells()[a]));
+    }
+  return {begin, end};
+}
+
+template <int dim>
 SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface,
                                std::vector<CellState>& cells) {
   const TiledGrid<dim>& grid = domain.grid;
@@ -157,8 +156,7 @@ SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapsh
   marks.near.assign(grid.n_stored_cells(), 0);
   if (grid.n_tiles() == 0)
     return marks;
-  Index<dim> begin{}, end{};
-  stored_range<dim>(grid, begin, end);
+  const auto [begin, end] = stored_range(grid);
   const LatticeCrossings<dim> crossings = surface.cross_lattice(grid.lattice(), begin, end);
   for (const auto& line : crossings.lines[0])
     fill_solid(grid, surface, line, begin[0], end[0], cells);
@@ -171,6 +169,8 @@ SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapsh
   return marks;
 }
 
+template std::array<Index<2>, 2> stored_range<2>(const TiledGrid<2>&);
+template std::array<Index<3>, 2> stored_range<3>(const TiledGrid<3>&);
 template SurfaceMarks<2> mark_surface<2>(const MacDomain<2>&, const SurfaceSnapshot<2>&,
                                          std::vector<CellState>&);
 template SurfaceMarks<3> mark_surface<3>(const MacDomain<3>&, const SurfaceSnapshot<3>&,

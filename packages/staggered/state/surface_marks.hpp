@@ -12,6 +12,10 @@ struct SurfaceMarks {
   std::vector<char> near;  ///< the surface comes within h/2 of the cell (maximum norm)
 };
 
+/// Lattice coordinates [begin, end) of a box of cells of the domain that holds the stored tiles.
+template <int dim>
+std::array<Index<dim>, 2> stored_range(const TiledGrid<dim>& grid);
+
 /// Sets cells whose centre is inside a closed solid to `CellState::solid` and marks occluded faces,
 /// all from the crossings of the cell-centre lines, so that both agree. Not collective.
 template <int dim>

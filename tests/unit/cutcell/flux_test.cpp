@@ -2,17 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <Tpetra_Core.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
-#include "conformance/fake_solid.hpp"
-#include "coupling/coupled_system.hpp"
 #include "cutcell/flux_coupling.hpp"
 #include "geometry/clipping.hpp"
 #include "linear/symmetry_check.hpp"
 #include "support/dense.hpp"
-#include "unit/mac/mac_cases.hpp"
+#include "unit/cutcell/bodies_in_tank.hpp"
 
 namespace lockstep::test {
 namespace {
@@ -29,21 +26,12 @@ FakeBody<dim> ball(double radius, const Point<dim>& center, double spacing) {
   return body;
 }
 
-/// A unit tank of water of density one with bodies, frozen at their places.
+/// A unit tank of water of density one with bodies.
 template <int dim>
-struct FluxCase {
+struct FluxCase : BodiesInTank<dim, FluxCoupling<dim>> {
   FluxCase(int n_cells, std::vector<FakeBody<dim>> bodies, const FluxOptions& options = {},
            bool periodic = false)
-      : fluid(tank(n_cells, periodic)), coupling(options) {
-    std::vector<std::unique_ptr<SolidModel<dim>>> models;
-    models.push_back(std::make_unique<FakeSolid<dim>>(std::move(bodies), FakeSolidOptions<dim>(),
-                                                      Tpetra::getDefaultComm()));
-    solids = std::make_unique<SolidSystem<dim>>(std::move(models), Tpetra::getDefaultComm());
-    system = std::make_unique<CoupledSystem<dim>>(*fluid, *solids, coupling);
-    surface = solids->snapshot();
-    system->freeze(surface);
-    fluid->begin_prediction();
-  }
+      : BodiesInTank<dim, FluxCoupling<dim>>(tank(n_cells, periodic), std::move(bodies), options) {}
   static std::unique_ptr<MacFluid<dim>> tank(int n_cells, bool periodic) {
     Index<dim> cells;
     cells.fill(n_cells);
@@ -56,13 +44,7 @@ struct FluxCase {
     return scene.make();
   }
   /// B_c: what unit velocities push out of the cell with this unknown.
-  Eigen::MatrixXd pushed() const { return dense(coupling.coupling_transposed()).transpose(); }
-
-  std::unique_ptr<MacFluid<dim>> fluid;
-  std::unique_ptr<SolidSystem<dim>> solids;
-  FluxCoupling<dim> coupling;
-  std::unique_ptr<CoupledSystem<dim>> system;
-  std::shared_ptr<const SurfaceSnapshot<dim>> surface;
+  Eigen::MatrixXd pushed() const { return dense(this->coupling.coupling_transposed()).transpose(); }
 };
 
 /// (int n, int r x n) over the surface inside a cell, r from the body's centre.
