@@ -5,6 +5,7 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "linear/matrix_sum.hpp"
 #include "linear/overlap.hpp"
@@ -224,12 +225,61 @@ void FaceCoupling<dim>::add_impulse_at_rest(double dt, Vector& momentum) const {
     add_loads<dim>(loads_at_rest_, *solids_, *surface_, dt, momentum);
 }
 
+namespace {
+
+/// The displaced mass of soft solids, on the nodes of their surfaces by area, but on dofs on which
+/// fluid is lumped. Local.
+template <int dim>
+std::vector<Triplet> added_mass_of_nodes(const std::vector<DisplacedMass<dim>>& displaced,
+                                         const SolidSystem<dim>& solids,
+                                         const SurfaceSnapshot<dim>& surface,
+                                         const RCP<const CrsMatrix>& lumped) {
+  Vector on_dofs(solids.map());
+  if (!lumped.is_null())
+    lumped->getLocalDiagCopy(on_dofs);
+  const auto has_fluid = on_dofs.getData();
+  std::vector<Triplet> triplets;
+  VelocityRow<dim> row;
+  for (const DisplacedMass<dim>& one : displaced) {
+    const SolidDescription& solid = surface.solids()[one.solid];
+    if (solid.rigid || solid.prescribed)
+      continue;
+    std::vector<double> areas;
+    for (int simplex = solid.simplex_begin; simplex < solid.simplex_end; ++simplex)
+      areas.push_back(area_vector<dim>(surface.corners(simplex)).norm());
+    const double whole = std::accumulate(areas.begin(), areas.end(), 0.0);
+    for (int simplex = solid.simplex_begin; simplex < solid.simplex_end; ++simplex) {
+      SurfacePoint<dim> corner;
+      corner.simplex = simplex;
+      for (int k = 0; k < dim; ++k) {
+        corner.barycentric.setZero();
+        corner.barycentric[k] = 1;
+        solids.velocity_row(corner, surface.corners(simplex)[k], row);
+        const double mass = one.mass * areas[simplex - solid.simplex_begin] / (dim * whole);
+        for (std::size_t i = 0; i < row.dofs.size(); ++i) {
+          const int local = solids.map()->getLocalElement(row.dofs[i]);
+          if (local >= 0 && has_fluid[local] == 0)
+            triplets.push_back(
+                {row.dofs[i], row.dofs[i], mass * row.coefficients[i].squaredNorm()});
+        }
+      }
+    }
+  }
+  return triplets;
+}
+
+}  // namespace
+
 template <int dim>
 RCP<const CrsMatrix> FaceCoupling<dim>::mass_with_fluid(const SolidSystem<dim>& solids) const {
   if (displaced_masses_.empty())
     return added_mass_;
-  const RCP<const CrsMatrix> of_balls = assemble_triplets(
-      added_mass_of_balls<dim>(displaced_masses_, solids, *surface_), solids.map(), solids.map());
+  std::vector<Triplet> triplets = added_mass_of_balls<dim>(displaced_masses_, solids, *surface_);
+  for (const Triplet& one :
+       added_mass_of_nodes<dim>(displaced_masses_, solids, *surface_, added_mass_))
+    triplets.push_back(one);
+  const RCP<const CrsMatrix> of_balls =
+      assemble_triplets(std::move(triplets), solids.map(), solids.map());
   if (added_mass_.is_null())
     return of_balls;
   return sum_of({{added_mass_}, {of_balls}}, solids.map());
