@@ -91,7 +91,7 @@ class GaussSeidelContact : public ContactModel<dim> {
   std::vector<std::string> numbers_;  ///< numbers of solids with these names
   RCP<const LinearOperator> known_inverse_;  ///< inverse of which `inverse_mass_` is the copy
   InverseMass inverse_mass_;
-  std::unique_ptr<Mobility<dim>> dense_mobility_;  ///< of the last response in this step
+  std::unique_ptr<Mobility<dim>> dense_mobility_;  ///< mobility in the last response of this step
   std::set<std::size_t> bouncing_;                 ///< see ContactProblem::keep_bouncing
   std::vector<FoundImpact<dim>> held_back_;  ///< by impact zones, in the positions of this step
   /// By phase, whether there was something to act on last time; results do not depend on it.

@@ -54,7 +54,7 @@ class TightWalls(unittest.TestCase):
                 self.assertLess(self.driven_flow("flux", (thickness, 3., 3.), (0., .2, .3), 1.0625), 1e-9)
 
     def pressure_before_slot(self, coupling, thickness):
-        """Of a stream of .2 m/s through a slot of .2 m in a wall [Pa]."""
+        """Returns the pressure [Pa] of a stream of .2 m/s through a slot of .2 m in a wall."""
         shape = {"Shape": "box", "Size": (thickness, .4)} if thickness else {"Shape": "plate", "Normal": "x", "Size": (0., .4)}
         plates = {name: {"Type": "rigid body", "Geometry": shape, "Position": (1.0104166666666667, y), "Motion": {"Type": "static"}}
                   for name, y in (("Below", .2), ("Above", .8))}

@@ -21,7 +21,7 @@ struct Carrier {
   Eigen::Matrix<double, dim, dim> factor;
 };
 
-/// What moves x: the point itself on a rigid solid, else the corners of its simplex
+/// Returns the points that move x: x itself on a rigid solid, else the corners of its simplex
 /// (`carried_point`).
 template <int dim>
 std::vector<Carrier<dim>> carriers_of(const ContactShapes<dim>& shapes,

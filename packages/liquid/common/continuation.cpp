@@ -34,7 +34,7 @@ class Neighbors {
 
 constexpr char no_layer = 127;
 
-/// Of cells in a solid thinner than they, with fluid on both ends of an axis, keeps the neighbours
+/// Keeps, for cells in a solid thinner than they with fluid on both ends of an axis, the neighbours
 /// whose fluid reaches into the cell if there are any: between water and air the mean of both sides
 /// would tell a pressure in the cut cell that it is in the air. Collective.
 template <int dim>

@@ -107,7 +107,8 @@ TEST(HeldRows, ASolveThatHoldsThemSolvesTheComplementarityProblem) {
   EXPECT_LT((held.ldlt().solve(rhs) - exact).lpNorm<Eigen::Infinity>(), 1e-8 * speed);
 }
 
-/// What sticks is held along the surface, too; a second decision in the same step is the same.
+/// A contact that sticks is held along the surface, too; a second decision in the same step is the
+/// same.
 TEST(HeldRows, FrictionThatSticksIsHeld) {
   std::vector<DeformableBody<2>> cloths;
   cloths.push_back(sheet<2>(2 * h, Point<2>(0, .05 * h), h));
