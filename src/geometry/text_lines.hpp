@@ -56,10 +56,10 @@ class TextLines {
   /// Throws InputError if the file announces more entries than it has bytes, or than are accepted.
   void check_count(long n) const {
     check_input(n >= 0, "{}: a count is negative: {}.", where(), n);
-    check_mesh_entries(where(), static_cast<std::size_t>(n));
     check_input(static_cast<std::uintmax_t>(n) <= size_,
                 "{}: {} entries are announced, but the file has {} bytes; it is damaged.", where(),
                 n, size_);
+    check_mesh_entries(where(), static_cast<std::size_t>(n));
   }
 
   /// A finite number in decimal notation.

@@ -108,7 +108,7 @@ CASES = [
     Case("limits without contact", ["\"Neck\" has limits", "\"Contact/Type\" must not be \"none\""],
          sets=["Contact/Type=none"], **joint("hinge", "space, Ball", limits(value("Upper", "double", .5)))),
     Case("joints and the paper's masses", ["\"paper diagonal\"", "cannot be combined with joints"],
-         sets=["Coupling/Lumping=paper diagonal"], **joint("hinge", "space, Ball")),
+         sets=["Coupling/Type=mixed face", "Coupling/Lumping=paper diagonal"], **joint("hinge", "space, Ball")),
     Case("a slider without axis", "\"Axis\"", **joint("slider", "space, Ball")),
     Case("another dimension", ["--set", "2 dimensions"], sets=["Dimension=3"]),
     Case("--set without value", "--set \"Time/End\"", sets=["Time/End"]),

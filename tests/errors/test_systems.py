@@ -146,7 +146,7 @@ class Systems(unittest.TestCase):
         # Cells all of whose faces are mixed leave empty rows in A.
         empty_rows = self.folder / "empty-rows.h5"
         result = simulate(self.folder, "--steps", 1, "--dump-system", "1:S2", empty_rows, "--set",
-                          "Coupling/Mixed Rule=every cut cell", "--set", "Solids/Ball/Geometry/Radius=0.05")
+                          "Coupling/Type=mixed face", "--set", "Coupling/Mixed Rule=every cut cell", "--set", "Solids/Ball/Geometry/Radius=0.05")
         self.assertEqual(result.returncode, 0, result.stderr)
         with h5py.File(empty_rows) as file:
             places, values = file["A/places"][...], file["A/values"][...]

@@ -36,7 +36,8 @@ class Strategies(unittest.TestCase):
                 assert_close(exact, self.motion(file), MOTION, 1e-6)
 
     def test_every_scene_by_belos_and_teko(self):
-        """Every shipped scene, coarse: MINRES with Teko's block preconditioner finds what the default finds."""
+        """Every shipped scene, coarse: MINRES with Teko's block preconditioner finds what the default finds; with contacts and
+        limits, which solves and decisions agree on to 1e-5 of g dt, to a little less."""
         for scene in sorted((ROOT / "xml-params/scenes").glob("*.xml")):
             cells = "{" + ", ".join(map(str, coarse_cells(scene))) + "}"
             with self.subTest(scene.stem), tempfile.TemporaryDirectory() as folder:
@@ -46,8 +47,9 @@ class Strategies(unittest.TestCase):
                     simulate(scene, run, "--steps", "3", "--set", f"Domain/Cells={cells}", "--set", "Output/Frames=false", *contact,
                              "--set", "Solver/Tolerance=1e-11", "--set", "Solver/Viscous Solve/Tolerance=3e-13",
                              "--set", f"Solver/File={ROOT}/xml-params/solvers/{run.name}.xml")
-                greatest = compare_runs(runs, 1e-8).greatest()
-                self.assertLess(greatest.size, 1e-8, str(greatest))
+                most = 1e-7 if contact else 1e-8
+                greatest = compare_runs(runs, most).greatest()
+                self.assertLess(greatest.size, most, str(greatest))
 
     def test_lightness_costs_pressure_schur_nothing(self):
         """Where C is 1e-7 of the fluid's, Woodbury's formula has only the round-off of a multigrid in single precision left."""
