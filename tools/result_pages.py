@@ -17,8 +17,8 @@ RESULTS = "docs/results"
 # A file that is new to a build changes too; a list of the files of a room changes no figure.
 NOT_BUILD_FILES = ":(exclude)*CMakeLists.txt"
 ANY_SOLVE = ["src/solve", "src/linear", "src/coupling", "packages/strategies", "packages/multigrid", "xml-params/solvers"]
-SOLID_PACKAGES = {"rigid body": "rigid", "deformable body": "deformable", "cloth": "deformable"}
-COUPLING_PACKAGES = {"mixed face": "mixedface", "flux": "cutcell"}
+SOLID_PACKAGES = {"rigid body": "rigid", "deformable body": "deformable", "cloth": "deformable", "spring": "lines", "mooring line": "lines"}
+COUPLING_PACKAGES = {"mixed face": {"mixedface"}, "flux": {"cutcell"}, "automatic": {"mixedface", "cutcell"}}
 
 
 @dataclasses.dataclass
@@ -146,7 +146,7 @@ def packages_of(settings, strategies):
     if any(re.match("Solids/.", path) for path in paths):
         packages |= {SOLID_PACKAGES[name] for name in types("Solids/[^/]*/Type", "rigid body")}
         # The default always counts: one series may have it where another one says something else.
-        packages |= {"faces"} | {COUPLING_PACKAGES[name] for name in types("Coupling/Type", "") | {"mixed face"} if name}
+        packages |= {"faces"}.union(*(COUPLING_PACKAGES[name] for name in types("Coupling/Type", "automatic")))
         if types("Contact/Type", "gauss seidel") != {"none"}:
             packages.add("contact")
     for word, package in (("Joints/", "articulated"), ("Observers/", "observers"), ("Fluid/Free Surface/", "liquid")):

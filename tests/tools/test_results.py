@@ -111,8 +111,8 @@ class Stale(Repository):
         for n, file in enumerate(["packages/deformable/a.cpp", "packages/liquid/a.cpp", "packages/articulated/a.cpp"], start=1):
             self.change(file)
             self.assertEqual(self.stale(), {"wave": n}, file)
-        self.change("packages/cutcell/a.cpp")
-        self.assertEqual(self.stale(), {"wave": 3, "piston": 1})
+        self.change("packages/cutcell/a.cpp")  # the default coupling may be either
+        self.assertEqual(self.stale(), {"wave": 4, "piston": 1})
 
     def test_from_a_dirty_tree(self):
         self.page("piston", self.git("rev-parse", "--short", "HEAD") + "-dirty")
