@@ -108,7 +108,7 @@ class Reader {
     const XML_Error code = XML_GetErrorCode(parser_.get());
     std::string hint;
     const bool unclosed = code == XML_ERROR_TAG_MISMATCH || code == XML_ERROR_NO_ELEMENTS;
-    if (unclosed && open_parameter_) {
+    if (unclosed && n_open_parameters_ > 0) {
       hint = fmt::format(" The <Parameter> of line {} is not closed; end it with \"/>\".",
                          parameter_line_);
     } else if (unclosed && !open_.empty()) {
@@ -120,10 +120,10 @@ class Reader {
 
   void start(const std::string& element, const Attributes& attributes) {
     const bool is_parameter = element == "Parameter" && !open_.empty();
-    const bool is_within_parameter = open_parameter_;
+    const bool is_within_parameter = n_open_parameters_ > 0;
     const std::size_t n_open = open_.size();
     if (is_parameter) {
-      open_parameter_ = true;
+      ++n_open_parameters_;
       parameter_line_ = line();
     }
     guard([&] {
@@ -151,8 +151,8 @@ class Reader {
   }
 
   void end(const std::string& element) {
-    if (element == "Parameter" && open_parameter_) {
-      open_parameter_ = false;
+    if (element == "Parameter" && n_open_parameters_ > 0) {
+      --n_open_parameters_;
     } else {
       open_.pop_back();
     }
@@ -249,7 +249,7 @@ class Reader {
   std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
   Document document_;
   std::vector<OpenList> open_;
-  bool open_parameter_ = false;
+  int n_open_parameters_ = 0;  ///< more than one by mistake
   int parameter_line_ = 0;
   std::list<ParameterList> dropped_;  ///< lists that stand where they must not
   Mistakes mistakes_;

@@ -150,6 +150,22 @@ TEST(StrictXml, RefusesWhatIsNotAParameterFile) {
               HasSubstr("<!DOCTYPE>"));
 }
 
+/// A list that was called a parameter: what it holds is looked at, too, and each end closes what it
+/// belongs to. (One end too many closed the document.)
+TEST(StrictXml, ParametersWithinAParameterAreTold) {
+  const std::string message = reading(
+      R"(<ParameterList name="a">
+  <Parameter name="b" type="int" value="1">
+    <Parameter name="c" type="int" value="2"/>
+    <Parameter name="d" type="int" value="3"/>
+  </Parameter>
+  <Parameter name="e" type="int" value="x"/>
+</ParameterList>)");
+  EXPECT_THAT(message, HasSubstr("case.xml, line 3: a <Parameter> holds nothing"));
+  EXPECT_THAT(message, HasSubstr("case.xml, line 4: a <Parameter> holds nothing"));
+  EXPECT_THAT(message, HasSubstr("case.xml, line 6"));
+}
+
 TEST(StrictXml, EveryRankReadsOrFailsAlike) {
   const auto comm = Tpetra::getDefaultComm();
   const std::string file = fmt::format("strict_xml_{}.xml", comm->getSize());
