@@ -74,8 +74,7 @@ template <int dim>
 class OpenFractionRule {
  public:
   virtual ~OpenFractionRule() = default;
-  /// `occluded`: a surface crosses the segment between its two pressure points, or parts the fluid
-  /// of its two cells.
+  /// `occluded`: a surface is between its two pressure points, or parts the fluid of its cells.
   virtual double open_fraction(const ControlVolume<dim>& volume, bool occluded,
                                const SurfaceSnapshot<dim>& surface) const = 0;
   /// True if cells are cut: every cell with an open face carries a pressure, wherever its centre

@@ -14,7 +14,8 @@ import sys
 
 NOT_COMPARED = {"wall_seconds", "name", "momentum_error", "angular_momentum_error", "max_divergence",
                 "s1_iterations", "f2_iterations", "s2_iterations", "viscous_iterations",
-                "lumping_torque_error_x", "lumping_torque_error_y", "lumping_torque_error_z", "s1_residual", "f2_residual", "s2_residual", "incompatibility", "f2_incompatibility"}
+                "lumping_torque_error_x", "lumping_torque_error_y", "lumping_torque_error_z", "s1_residual", "f2_residual", "s2_residual",
+                "contact_residual", "incompatibility", "f2_incompatibility"}
 
 
 def table(path):
