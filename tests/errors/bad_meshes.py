@@ -13,6 +13,7 @@ f 1 2 4
 f 1 4 3
 f 2 3 4
 """
+BLANKS = "\n" * 20000000  # or the file would be shorter than what it announces
 TOO_MANY_POINTS = """# vtk DataFile Version 3.0
 a mesh
 ASCII
@@ -64,9 +65,9 @@ def mesh(text, name="body.obj"):
 CASES = [
     Case("a flat volume", ["Ball", "flat"], **mesh(FLAT)),
     Case("an OFF file of too many vertices", ["body.off, line 2", "20000000 vertices or elements", "at most 10000000"],
-         **mesh("OFF\n20000000 3 0\n", "body.off")),
+         **mesh("OFF\n20000000 3 0\n" + BLANKS, "body.off")),
     Case("a volume mesh of too many points", ["body.vtk, line 5", "20000000 vertices or elements", "at most 10000000"],
-         scene=SOFT_SCENE_3D, files=[("body.vtk", TOO_MANY_POINTS)],
+         scene=SOFT_SCENE_3D, files=[("body.vtk", TOO_MANY_POINTS + BLANKS)],
          change=(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.vtk"))),
     Case("a mesh in micrometres", ["The solid \"Ball\" is 900000 m long, in a domain of", "\"Scale\""],
          **mesh(re.sub(r"\b1\b(?=.*$)", "9e5", TETRAHEDRON.split("f", 1)[0], flags=re.M) + "f" + TETRAHEDRON.split("f", 1)[1])),
