@@ -13,7 +13,7 @@ f 1 2 4
 f 1 4 3
 f 2 3 4
 """
-BLANKS = "\n" * 20000000  # or the file would be shorter than what it announces
+BLANKS = "\n" * 20000000  # makes the file as long as what it announces
 TOO_MANY_POINTS = """# vtk DataFile Version 3.0
 a mesh
 ASCII
