@@ -119,12 +119,14 @@ Mobility<dim>& GaussSeidelContact<dim>::dense_mobility(const SolidSystem<dim>& s
 }
 
 template <int dim>
-ContactReport<dim> GaussSeidelContact<dim>::act(const SolidSystem<dim>& solids,
-                                                const Request& request, Vector& velocity) {
-  const auto& [phase, dt, response, decides] = request;
-  ContactReport<dim> report;
+auto GaussSeidelContact<dim>::act(const SolidSystem<dim>& solids, const Request& request,
+                                  Vector& velocity) -> Outcome {
+  const auto& [phase, dt, response, task] = request;
+  const bool decides = task != Task::resolve;
+  Outcome outcome;
+  ContactReport<dim>& report = outcome.report;
   if (!solids.has_unknowns())
-    return report;
+    return outcome;
   move_walls(phase, dt);
   ContactShapes<dim> shapes(solids, topology_);
   if (solids.joints())
@@ -138,7 +140,7 @@ ContactReport<dim> GaussSeidelContact<dim>::act(const SolidSystem<dim>& solids,
                               spacing_, phase, dt);
   if (decides)
     problem.leave_impacts();
-  if (decides && phase == ContactPhase::velocity)
+  if (task == Task::decide && phase == ContactPhase::velocity)
     problem.keep_bouncing(bouncing_);
   if (phase == ContactPhase::position)
     held_back_.clear();
@@ -148,8 +150,9 @@ ContactReport<dim> GaussSeidelContact<dim>::act(const SolidSystem<dim>& solids,
   bool& acted = acted_[phase == ContactPhase::position ? 0 : 1];
   const bool acts = problem.prepare(replicated(solids, *solids.velocity()), given, acted);
   acted = acts;
-  if (!acts)
-    return report;
+  outcome.acts = acts;
+  if (!acts || task == Task::look)
+    return outcome;
   report.deepest_overlap = problem.deepest_overlap();
   // The response of rigid solids and of nodes falls apart into blocks, as their masses do.
   const RCP<const CrsMatrix> blocks = decides ? assembled(response()) : RCP<const CrsMatrix>();
@@ -198,7 +201,7 @@ ContactReport<dim> GaussSeidelContact<dim>::act(const SolidSystem<dim>& solids,
     report.external_impulse += solids.momentum(*report.reactions);
   }
   velocity.update(1, *change, 1);
-  return report;
+  return outcome;
 }
 
 template <int dim>

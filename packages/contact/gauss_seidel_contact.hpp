@@ -61,21 +61,32 @@ class GaussSeidelContact : public ContactModel<dim> {
   using ContactModel<dim>::resolve;
   ContactReport<dim> resolve(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
                              Vector& velocity, const ContactResponse& response) override {
-    return act(solids, {phase, dt, response, false}, velocity);
+    return act(solids, {phase, dt, response, Task::resolve}, velocity).report;
   }
   ContactReport<dim> decide(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
                             Vector& velocity, const ContactResponse& response) override {
-    return act(solids, {phase, dt, response, true}, velocity);
+    return act(solids, {phase, dt, response, Task::decide}, velocity).report;
+  }
+  bool may_act(const SolidSystem<dim>& solids, ContactPhase phase, double dt,
+               const Vector& velocity) override {
+    Vector copy(velocity, Teuchos::Copy);
+    return act(solids, {phase, dt, {}, Task::look}, copy).acts;
   }
 
  private:
+  enum class Task { look, decide, resolve };
   struct Request {
     ContactPhase phase;
     double dt;
     const ContactResponse& response;
-    bool decides;
+    Task task;
   };
-  ContactReport<dim> act(const SolidSystem<dim>& solids, const Request& request, Vector& velocity);
+  struct Outcome {
+    bool acts = false;  ///< there is something to act on
+    ContactReport<dim> report;
+  };
+  /// Changes the velocity, but for Task::look.
+  Outcome act(const SolidSystem<dim>& solids, const Request& request, Vector& velocity);
   Mobility<dim>& dense_mobility(const SolidSystem<dim>& solids, const ContactResponse& response);
   void move_walls(ContactPhase phase, double dt);
   const InverseMass& inverse_mass_of(const SolidSystem<dim>& solids);

@@ -56,8 +56,8 @@ Point<dim> open_center_of(const ControlVolume<dim>& volume,
 template <int dim>
 struct FaceShares {
   std::vector<FluxShare<dim>> all;  ///< shares of the closed part; weights sum to one
-  /// Of a face that is closed although its area is open, the shares of the shells between the
-  /// pressure points, or else of the solids in its dual cell, as in the mixed-face coupling.
+  /// Shares in a face that is closed although its area is open: of the shells between the pressure
+  /// points, or else of the solids in its dual cell, as in the mixed-face coupling.
   std::vector<SurfaceShare<dim>> of_thin;
   double thin_part = 0;  ///< open part of the area of such a face, whose fluid they carry [1]
 };

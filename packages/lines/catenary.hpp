@@ -9,8 +9,8 @@ struct CatenaryParameters {
   double length = 0;     ///< length without tension [m]
   double weight = 0;     ///< weight in the fluid by length [N/m]
   double stiffness = 0;  ///< tension by strain, EA [N]
-  bool on_floor =
-      false;  ///< the first end lies on level ground, and with it what tension lifts not
+  /// The first end lies on level ground, and with it the part that tension does not lift.
+  bool on_floor = false;
 };
 
 /// Tension of the upper end of an elastic catenary, along the way to it and down.

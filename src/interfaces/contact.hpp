@@ -85,6 +85,11 @@ class ContactModel : public PlugIn {
                                     Vector& velocity, const ContactResponse& response) {
     return resolve(solids, phase, dt, velocity, response);
   }
+  /// False if nothing is near enough to touch at these velocities, so that the response need not be
+  /// known. Changes nothing that a later decision depends on. Collective.
+  virtual bool may_act(const SolidSystem<dim>&, ContactPhase, double, const Vector&) {
+    return true;
+  }
 };
 
 }  // namespace lockstep

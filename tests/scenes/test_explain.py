@@ -41,6 +41,14 @@ class Explain(unittest.TestCase):
         self.assertRegex(rows["Flag"], r"^0.5 kg, 0 x 0.5 m \(0 x 8 cells\), \d+ segments, wet inside, steps of at most .* s \(.*Flag.*\)$")
         self.assertEqual(warnings, [])
 
+    def test_the_default_coupling(self):
+        """Fluxes, if all closed solids are rigid and thick; it is said why not."""
+        crate, slat = box(.5, .25, .5, .5), box(.5, .06, .5, .2)
+        for solids, coupling in (({"Crate": crate, "Flag": SHEET}, "flux (automatic: closed solids are rigid, and not thin), "),
+                                 ({"Crate": crate, "Slat": slat}, 'mixed face (automatic: "Slat" is 0.96 cells thick), ')):
+            self.assertIn(coupling, self.explained(solids)[0]["coupling"])
+        self.assertNotIn("automatic", self.explained({"Crate": crate}, Coupling={"Type": "flux"})[0]["coupling"])
+
     def test_frames_and_duration(self):
         rows, _ = self.explained({}, Output={"Frame Interval": .25}, Time={"End": 1., "Fixed Step": .1})
         self.assertRegex(rows["frames"], r"^every 0.25 s, 5 x 0.00\d+ MB = 0.0\d+ MB, uncompressed$")

@@ -81,6 +81,7 @@ FEATURES = [
     # The pressure of the first two steps is found before their viscous solves.
     ("viscosity", TANK, {"Fluid": {"Viscosity": 1.}}, FIRST_PRESSURE | solves("F3 forces", 1, 2)),
     ("second order in time", TANK, {"Fluid": {"Order in Time": 2}}, fields("acceleration rate free")),
+    ("the default order in time", TANK, {"Fluid": {"Order in Time": 0}}, fields("acceleration rate free")),
     ("moving tiles", TANK, {"Fluid": {"Moving Tiles": {}}}, fields("tiles")),
     ("energy budget", TANK, {"Observers": {"Budget": {"Type": "energy"}}},
      {"stage observers", "file Budget.csv", "kept observers/energy Budget/energy"}),

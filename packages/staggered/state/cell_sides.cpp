@@ -78,13 +78,13 @@ void CellSides<dim>::mark_line(int axis, const Line& line) {
     Index<dim> corner = line.cell;
     corner[axis] = next - 1;
     if (next > 0 && next <= n)
-      mark_edge(axis, corner);
+      mark_around(corner, [axis](int c) { return c >> axis & 1 ? 0 : edge_bit<dim>(axis, c); });
     const int solid = surface_.solid_of(crossing.simplex);
     if (axis > 0 || !surface_.solids()[solid].closed)
       continue;
     for (; !holders.empty() && from < next; ++from) {
       corner[axis] = from;
-      mark_inside(corner);
+      mark_around(corner, [](int c) { return bit(c); });
     }
     from = next;
     const auto found = std::find(holders.begin(), holders.end(), solid);
@@ -95,24 +95,10 @@ void CellSides<dim>::mark_line(int axis, const Line& line) {
   }
 }
 
-/// Marks the edge that leads up along the axis from there, in all cells around it.
+/// Sets the bit that a corner of the lattice has in each cell around it; 0: none.
 template <int dim>
-void CellSides<dim>::mark_edge(int axis, const Index<dim>& corner) {
-  for (int c = 0; c < n_corners; ++c) {
-    if (c >> axis & 1)
-      continue;
-    Index<dim> place = corner;
-    for (int a = 0; a < dim; ++a)
-      place[a] -= c >> a & 1;
-    if (!domain_.grid.in_domain(place))
-      continue;
-    if (const int cell = domain_.grid.cell(place); cell >= 0)
-      cuts_[cell] |= edge_bit<dim>(axis, c);
-  }
-}
-
-template <int dim>
-void CellSides<dim>::mark_inside(const Index<dim>& corner) {
+template <typename Bit>
+void CellSides<dim>::mark_around(const Index<dim>& corner, const Bit& bit_of) {
   for (int c = 0; c < n_corners; ++c) {
     Index<dim> place = corner;
     for (int a = 0; a < dim; ++a)
@@ -120,7 +106,7 @@ void CellSides<dim>::mark_inside(const Index<dim>& corner) {
     if (!domain_.grid.in_domain(place))
       continue;
     if (const int cell = domain_.grid.cell(place); cell >= 0)
-      cuts_[cell] |= bit(c);
+      cuts_[cell] |= bit_of(c);
   }
 }
 
@@ -241,7 +227,7 @@ int CellSides<dim>::side_of(int cell) const {
 }
 
 template <int dim>
-bool CellSides<dim>::centre_is_on_side(int cell) const {
+bool CellSides<dim>::center_is_on_side(int cell) const {
   if (cells_[cell] != CellState::fluid)
     return false;
   for (int c = 0; c < n_corners; ++c)
@@ -261,8 +247,8 @@ bool CellSides<dim>::joined(int axis, int cell) const {
     if ((c >> axis & 1) == 0 && (shared >> c & 1) != 0)
       return true;
   return (marks_.occluded[cell] >> axis & 1) == 0 &&
-         (face.lower < 0 || centre_is_on_side(face.lower)) &&
-         (face.upper < 0 || centre_is_on_side(face.upper));
+         (face.lower < 0 || center_is_on_side(face.lower)) &&
+         (face.upper < 0 || center_is_on_side(face.upper));
 }
 
 template class CellSides<2>;

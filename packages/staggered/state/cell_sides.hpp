@@ -30,21 +30,21 @@ class CellSides {
   using Line = typename LatticeCrossings<dim>::Line;
 
   void mark_line(int axis, const Line& line);
-  void mark_edge(int axis, const Index<dim>& corner);
-  void mark_inside(const Index<dim>& corner);
+  template <typename Bit>
+  void mark_around(const Index<dim>& corner, const Bit& bit_of);
   Point<dim> corner(int cell, int corner) const;
   bool sees(int cell, int corner) const;
   bool is_uncut(int cell, const Index<dim>& place, int axis, int corner) const;
   Components components(int cell) const;
   void join_around(int cell, Components& of_corner) const;
   int side_of(int cell) const;
-  bool centre_is_on_side(int cell) const;
+  bool center_is_on_side(int cell) const;
 
   const MacDomain<dim>& domain_;
   const SurfaceSnapshot<dim>& surface_;
   const SurfaceMarks<dim>& marks_;
   const std::vector<CellState>& cells_;
-  Lattice<dim> lattice_;  ///< "centres" of which are the corners of cells, all but
+  Lattice<dim> lattice_;  ///< its "centres" are the corners of the cells, moved by next to nothing
   /// By cell: corners inside a closed solid (bit 2^dim numbers, bit k of which is the end along
   /// axis k), and edges that a surface crosses (by axis and lower corner).
   std::vector<std::uint32_t> cuts_;

@@ -123,6 +123,11 @@ RCP<const Vector> on_unknowns(const Reduction& constraints, const RCP<Vector>& i
   return impulse;
 }
 
+template <int dim>
+ContactPhase phase_of(const StepContext<dim>& context) {
+  return context.moves_positions ? ContactPhase::position : ContactPhase::velocity;
+}
+
 double largest(const std::vector<double>& values) {
   double most = 0;
   for (const double value : values)
@@ -196,10 +201,8 @@ template <int dim>
 ContactReport<dim> CoupledSolve<dim>::decide(const StepContext<dim>& context,
                                              const ContactResponse& response, Vector& velocity) {
   ScopedStage stage(timers_, "contact");
-  const ContactPhase phase =
-      context.moves_positions ? ContactPhase::position : ContactPhase::velocity;
-  ContactReport<dim> report =
-      components_.contact->decide(*components_.solids, phase, context.step.dt, velocity, response);
+  ContactReport<dim> report = components_.contact->decide(*components_.solids, phase_of(context),
+                                                          context.step.dt, velocity, response);
   soften(context.dt, report.held);
   return report;
 }
@@ -232,8 +235,12 @@ ContactReport<dim> CoupledSolve<dim>::expected_contacts(const StepContext<dim>& 
                                                         const ContactResponse& response) {
   const auto& solids = *components_.solids;
   Vector velocity(*solids.velocity(), Teuchos::Copy), given(momentum, Teuchos::Copy);
-  apply(*solids.full_block(Teuchos::null, context.dt), velocity, given, -1, 1);
   given.update(1, *impulse_at_rest(context.dt), 1);
+  // R of soft solids and mechanisms is dear: it is not made where nothing is near.
+  if (!components_.contact->may_act(solids, phase_of(context), context.step.dt,
+                                    *solids.velocity_of(given)))
+    return {};
+  apply(*solids.full_block(Teuchos::null, context.dt), velocity, given, -1, 1);
   context.constraints.restrict(given);
   apply(*response(), given, velocity, 1, 1);
   context.constraints.expand(velocity);
