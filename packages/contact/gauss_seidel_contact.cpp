@@ -119,8 +119,8 @@ Mobility<dim>& GaussSeidelContact<dim>::dense_mobility(const SolidSystem<dim>& s
 }
 
 template <int dim>
-auto GaussSeidelContact<dim>::act(const SolidSystem<dim>& solids, const Request& request,
-                                  Vector& velocity) -> Outcome {
+typename GaussSeidelContact<dim>::Outcome GaussSeidelContact<dim>::act(
+    const SolidSystem<dim>& solids, const Request& request, Vector& velocity) {
   const auto& [phase, dt, response, task] = request;
   const bool decides = task != Task::resolve;
   Outcome outcome;

@@ -52,9 +52,11 @@ void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
     masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
     if (volume.only_gas())
       masses_[f] = 0;
-    if (liquid && masses_[f] > 0)
-      masses_[f] = volume.density * shares_[f].thin_part *
-                   std::max(0.0, wet_volume<dim>(volume, surface, true, *liquid));
+    if (liquid && masses_[f] > 0) {
+      const double wet = std::max(0.0, wet_volume<dim>(volume, surface, true, *liquid));
+      const double dry = std::max(0.0, volume.box.volume() - wet);
+      masses_[f] = shares_[f].thin_part * (volume.density * wet + liquid->gas_density() * dry);
+    }
   }
   find_prescribed_velocity(solids);
   if (options_.correct_buoyancy)

@@ -13,35 +13,56 @@ HydrostaticLoads<dim>::HydrostaticLoads(const FluidDiscretization<dim>& fluid,
     : surface_(surface),
       gravity_(fluid.gravity()),
       density_(density),
+      gas_density_(fluid.liquid() ? fluid.liquid()->gas_density() : 0),
       spacing_(fluid.smallest_length()),
-      has_level_(fluid.liquid() != nullptr),
+      is_below_air_(fluid.liquid() && gas_density_ == 0),
       pressures_(surface.solids().size()),
       centers_(pressures_.size(), Point<dim>::Zero()),
-      volumes_(pressures_.size(), 0),
+      masses_(pressures_.size(), 0),
       sums_(pressures_.size()) {
-  const Point<dim> up = -gravity_.normalized();
-  std::vector<WaterLevel> levels;
-  if (has_level_)
-    levels = fluid.liquid()->levels_at_solids();
+  const auto levels =
+      fluid.liquid() ? fluid.liquid()->levels_at_solids() : std::vector<WaterLevel>();
   for (int s = 0; s < static_cast<int>(pressures_.size()); ++s) {
     const SolidDescription& solid = surface.solids()[s];
-    if (solid.simplex_begin == solid.simplex_end || (!solid.closed && !solid.rigid) ||
-        (has_level_ && !levels[s].known))
+    if (solid.simplex_begin == solid.simplex_end || (!solid.closed && !solid.rigid))
       continue;
-    if (solid.closed && has_level_ && !levels[s].is_wet)
-      continue;  // it is in the air
-    RestPressure<dim>& pressure = pressures_[s];
-    pressure.pierces = has_level_ && levels[s].pierces;
-    PartOfSolid<dim> displaced{0, surface.bounds_of_solid(s).center()};
-    if (solid.closed)
-      displaced = pressure.pierces
-                      ? part_below<dim>(surface, s, fluid.bounds(), up, levels[s].height)
-                      : part_of_solid<dim>(surface, s, fluid.bounds());
-    pressure.gradient = density * gravity_;
-    pressure.origin = has_level_ ? Point<dim>(levels[s].height * up) : displaced.centroid;
-    centers_[s] = displaced.centroid;
-    volumes_[s] = displaced.volume;
+    const WaterLevel* level = levels.empty() ? nullptr : &levels[s];
+    const bool in_air = is_below_air_ && (!level->known || (solid.closed && !level->is_wet));
+    if (!in_air)
+      set_rest(s, fluid.bounds(), level);
   }
+}
+
+/// `level`: null in a fluid without a surface.
+template <int dim>
+void HydrostaticLoads<dim>::set_rest(int solid, const Box<dim>& bounds, const WaterLevel* level) {
+  const Point<dim> up = -gravity_.normalized();
+  PartOfSolid<dim> whole{0, surface_.bounds_of_solid(solid).center()};
+  if (surface_.solids()[solid].closed)
+    whole = part_of_solid<dim>(surface_, solid, bounds);
+  RestPressure<dim>& pressure = pressures_[solid];
+  if (!level || !level->known) {  // one fluid fills the domain
+    const double density = level && !level->is_wet ? gas_density_ : density_;
+    pressure.gradient = density * gravity_;
+    pressure.origin = centers_[solid] = whole.centroid;
+    masses_[solid] = density * whole.volume;
+    return;
+  }
+  const bool is_below = level->is_wet && !level->pierces;
+  const bool is_parted = surface_.solids()[solid].closed && !is_below;
+  const PartOfSolid<dim> below =
+      is_parted ? part_below<dim>(surface_, solid, bounds, up, level->height) : whole;
+  pressure.gradient = density_ * gravity_;
+  pressure.origin = level->height * up;
+  if (level->pierces || gas_density_ > 0)
+    pressure.above = gas_density_ / density_;
+  const double liquid = density_ * below.volume, gas = gas_density_ * (whole.volume - below.volume);
+  masses_[solid] = liquid + gas;
+  centers_[solid] = below.centroid;
+  if (gas > 0)
+    centers_[solid] = (gas_density_ * whole.volume * whole.centroid +
+                       (density_ - gas_density_) * below.volume * below.centroid) /
+                      masses_[solid];
 }
 
 template <int dim>
@@ -100,8 +121,7 @@ void HydrostaticLoads<dim>::sum(const Communicator& comm) {
 
 template <int dim>
 AxisLoad<dim> HydrostaticLoads<dim>::exact(int solid, int axis) const {
-  return {solid, axis, centers_[solid], -density_ * volumes_[solid] * gravity_[axis],
-          Point<dim>::Zero()};
+  return {solid, axis, centers_[solid], -masses_[solid] * gravity_[axis], Point<dim>::Zero()};
 }
 
 /// True if the grid has the force along an axis but for what it misplaces: the pressure on a face
@@ -113,7 +133,7 @@ bool HydrostaticLoads<dim>::is_covered(int solid, int axis, const Sum& sum) cons
   const RestPressure<dim>& pressure = pressures_[solid];
   // Along a level axis water at rest wets both ends of a solid alike, a wave does not.
   const bool is_level = std::abs(gravity_[axis]) <= round_off * gravity_.norm();
-  if ((!pressure.pierces || is_level) && std::abs(sum.open_area) > round_off * sum.area)
+  if ((pressure.above > 0 || is_level) && std::abs(sum.open_area) > round_off * sum.area)
     return false;
   double area = 2;  // two ends
   for (int a = 0; a < dim; ++a)
@@ -131,7 +151,7 @@ std::vector<AxisLoad<dim>> HydrostaticLoads<dim>::on_grid() const {
       const Sum& sum = sums_[s][axis];
       // The pressure of closed fluid has no level, so that nothing can be said of a hidden end.
       const bool is_hidden =
-          !has_level_ && surface_.solids()[s].closed && !is_covered(s, axis, sum);
+          !is_below_air_ && surface_.solids()[s].closed && !is_covered(s, axis, sum);
       loads.push_back(is_hidden ? exact(s, axis)
                                 : AxisLoad<dim>{s, axis, centers_[s], sum.force, sum.moment});
     }
@@ -157,9 +177,9 @@ std::vector<AxisLoad<dim>> HydrostaticLoads<dim>::corrections() const {
 template <int dim>
 std::vector<DisplacedMass<dim>> HydrostaticLoads<dim>::displaced_masses() const {
   std::vector<DisplacedMass<dim>> masses;
-  for (int s = 0; s < static_cast<int>(volumes_.size()); ++s)
-    if (volumes_[s] > 0)
-      masses.push_back({s, density_ * volumes_[s], centers_[s]});
+  for (int s = 0; s < static_cast<int>(masses_.size()); ++s)
+    if (masses_[s] > 0)
+      masses.push_back({s, masses_[s], centers_[s]});
   return masses;
 }
 

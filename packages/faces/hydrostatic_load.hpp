@@ -8,17 +8,17 @@
 
 namespace lockstep {
 
-/// Pressure of the fluid at rest around one solid: p_h = rho g.(x - x0), where it stands out of a
-/// free surface not less than zero, the pressure of the air.
+/// Pressure of the fluid at rest around one solid: p_h = rho g.(x - x0), with the density of the
+/// liquid below x0 and of the gas above; of air without mass zero.
 template <int dim>
 struct RestPressure {
   Point<dim> gradient = Point<dim>::Zero();  ///< rho g [Pa/m]
   Point<dim> origin = Point<dim>::Zero();    ///< x0: on the free surface, if there is one [m]
-  bool pierces = false;                      ///< the solid pierces the surface or is above it
+  double above = 1;  ///< factor above the surface: 1 for a solid that does not pierce it
 
   double operator()(const Point<dim>& x) const {
     const double pressure = gradient.dot(x - origin);
-    return pierces ? std::max(0., pressure) : pressure;
+    return pressure < 0 ? above * pressure : pressure;
   }
 };
 
@@ -72,16 +72,17 @@ class HydrostaticLoads {
     double open_area = 0;  ///< signed area of the closed parts beside a pressure [m^(dim-1)]
     double area = 0;       ///< area of all closed parts [m^(dim-1)]
   };
+  void set_rest(int solid, const Box<dim>& bounds, const WaterLevel* level);
   bool is_covered(int solid, int axis, const Sum& sum) const;
   AxisLoad<dim> exact(int solid, int axis) const;
 
   const SurfaceSnapshot<dim>& surface_;
   Point<dim> gravity_;
-  double density_, spacing_;
-  bool has_level_;
+  double density_, gas_density_, spacing_;
+  bool is_below_air_;  ///< the fluid has a surface, above which is air without mass
   std::vector<RestPressure<dim>> pressures_;  ///< by solid; zero gradient where there is none
-  std::vector<Point<dim>> centers_;           ///< centroids of the displaced volumes [m]
-  std::vector<double> volumes_;               ///< displaced volumes [m^dim]
+  std::vector<Point<dim>> centers_;           ///< centres of that mass [m]
+  std::vector<double> masses_;                ///< masses of the displaced fluid [kg]
   std::vector<std::array<Sum, dim>> sums_;    ///< on the grid
 };
 

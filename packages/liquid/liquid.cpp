@@ -31,6 +31,17 @@ double largest_displacement(const MacDomain<dim>& domain, const GridState<dim>& 
   return max_all(domain.grid.comm(), fastest) * dt / domain.spacing();
 }
 
+constexpr const char* smallest_cavity = "Smallest Cavity";
+
+/// Rounds a ratio of densities to 20 binary digits, so that the coefficients of a cell of gas add
+/// up without rounding in single precision (FaceCoefficients). Changes the density by at most 5e-7.
+double rounded_for_sums(double ratio) {
+  constexpr int digits = 20;
+  int exponent = 0;
+  std::frexp(ratio, &exponent);
+  return std::ldexp(std::round(std::ldexp(ratio, digits - exponent)), exponent - digits);
+}
+
 /// Beyond what is extended nothing moves: what the liquid once left there would count as motion.
 template <int dim>
 void stop_beyond(const GridState<dim>& state, FaceField<dim>& velocity) {
@@ -49,10 +60,14 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
   check_free_surface<dim>(fluid, gravity, periodic_axes(domain));
   const ParameterList& list = fluid.sublist("Free Surface");
   parameters_ = read_free_surface(list);
-  // omega^2 = k (g + sigma k^2 / rho)
-  short_wave_acceleration_ =
-      acceleration.norm() +
-      parameters_.tension / (fluid.get<double>("Density") * std::pow(domain.spacing(), 2));
+  const Phases phases = read_phases(fluid);
+  const double density = phases.liquid.density;
+  if (phases.gas)
+    gas_density_ = density / rounded_for_sums(density / phases.gas->density);
+  // omega^2 = k ((rho_1 - rho_2) g + sigma k^2) / (rho_1 + rho_2)
+  short_wave_acceleration_ = (std::abs(density - gas_density_) * acceleration.norm() +
+                              parameters_.tension / std::pow(domain.spacing(), 2)) /
+                             (density + gas_density_);
   initial_distance_ = read_liquid<dim>(fluid, gravity);
   starts_empty_ = list.sublist("Liquid").numParams() == 0;
   sinks_ = read_sinks<dim>(list);
@@ -62,7 +77,9 @@ Liquid<dim>::Liquid(const ParameterList& fluid, const Point<dim>& gravity,
     watched_ = std::make_unique<WatchedPlaces<dim>>(domain, std::move(watches));
   if (const auto gas = read_gas<dim>(fluid); gas.kind != TrappedAir::none)
     gas_ = std::make_unique<GasBubbles<dim>>(domain, gas, gravity);
-  const ParameterList& interface = list.sublist("Interface");
+  ParameterList interface = list.sublist("Interface");
+  if (has_gas() && interface.isParameter(smallest_cavity))
+    interface.set(smallest_cavity, 0);  // a bubble has mass and pressure, and drains nothing
   interface_ = interfaces.create(interface.get<std::string>("Type"), interface, domain);
 }
 
@@ -108,36 +125,85 @@ FreeSurface<dim> Liquid<dim>::surface() {
   };
   surface.at_true_place = parameters_.pressure_order == 2;
   surface.gas = gas_.get();
+  surface.gas_density = gas_density_;
   return surface;
 }
 
 template <int dim>
-void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
-                          FaceField<dim>& advection_velocity, FaceField<dim>& velocity) {
+void Liquid<dim>::extend(const InterfaceStep<dim>& step, const std::vector<char>& near,
+                         GridState<dim>& state, FaceField<dim>& advection_velocity,
+                         FaceField<dim>& velocity) const {
   const double displacement =
-      largest_displacement<dim>(domain_, geometry.state, advection_velocity, step.dt);
+      largest_displacement<dim>(domain_, state, advection_velocity, step.dt);
   // Beyond the domain nothing is left to extend to, however fast a run is that has become unstable.
   const auto& n_cells = domain_.grid.n_cells();
   const double farthest = std::accumulate(n_cells.begin(), n_cells.end(), 1.0);
   const double band = interface_->band(std::min(displacement, farthest)) * domain_.spacing();
-  const auto solids = step.kept.of(geometry.state.surface, domain_.grid, 2);
+  const auto solids = step.kept.of(state.surface, domain_.grid, 2);
   const double known = interface_->band(0) * domain_.spacing();
-  const VelocityExtension<dim> extension(domain_, interface_->distance(), known, band,
-                                         geometry.near, *solids, geometry.state);
+  const VelocityExtension<dim> extension(domain_, interface_->distance(), known, band, near,
+                                         *solids, state);
   extension.extend(step.time, step.surface.velocity, advection_velocity);
-  stop_beyond<dim>(geometry.state, advection_velocity);
+  stop_beyond<dim>(state, advection_velocity);
   if (&velocity != &advection_velocity) {
     extension.extend(step.time, step.surface.velocity, velocity);
-    stop_beyond<dim>(geometry.state, velocity);
+    stop_beyond<dim>(state, velocity);
   }
+}
+
+namespace {
+/// The state of the samples if the gas had no mass.
+template <int dim>
+GridState<dim> without_gas(const MacDomain<dim>& domain, const CellField& distance,
+                           GridState<dim> state) {
+  domain.grid.for_each_stored_cell([&](int cell) {
+    if (state.cells[cell] == CellState::fluid && distance[cell] >= 0)
+      state.cells[cell] = CellState::air;
+  });
+  const auto is_fluid = [&](int cell) {
+    return cell >= 0 && state.cells[cell] == CellState::fluid;
+  };
+  for (int axis = 0; axis < dim; ++axis)
+    for (int face = 0; face < domain.grid.n_stored_cells(); ++face) {
+      const FaceCells cells = cells_of_face(domain.grid, state.cells, axis, face);
+      if (!is_fluid(cells.lower) && !is_fluid(cells.upper))
+        state.faces[axis][face] = FaceState::inactive;
+    }
+  return state;
+}
+
+template <int dim>
+InterfaceStep<dim> with_velocity(const FaceField<dim>& velocity, const InterfaceStep<dim>& step) {
+  return {velocity, step.surface, step.ray_halo, step.kept,    step.time,
+          step.dt,  step.sources, step.sinks,    step.gravity, step.open};
+}
+}  // namespace
+
+/// A gas slips along a surface, so that velocities between the two are those of neither: waves
+/// would grow by a sixth in a period. Below a gas, too, the surface moves with the liquid, unless
+/// it is moved by what flows through faces.
+template <int dim>
+void Liquid<dim>::advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
+                          FaceField<dim>& advection_velocity, FaceField<dim>& velocity) {
+  FaceField<dim> of_liquid;
+  const bool has_own = has_gas() && !interface_->moves_by_fluxes();
+  if (has_own) {
+    of_liquid = advection_velocity;
+    GridState<dim> state = without_gas(domain_, interface_->distance(), geometry.state);
+    extend(step, geometry.near, state, of_liquid, of_liquid);
+  } else if (!has_gas()) {
+    extend(step, geometry.near, geometry.state, advection_velocity, velocity);
+  }
+  const FaceField<dim>& of_surface = has_own ? of_liquid : advection_velocity;
   if (short_wave_acceleration_ > 0)
-    filter_shift_ = short_wave_filter<dim>(domain_, geometry, interface_->distance(),
-                                           advection_velocity, short_wave_acceleration_, step.dt);
+    filter_shift_ = short_wave_filter<dim>(domain_, geometry, interface_->distance(), of_surface,
+                                           short_wave_acceleration_, step.dt);
   if (gas_)
     gas_->pass_over(step.surface);
-  interface_->advance(step);
+  const InterfaceStep<dim> of_interface = with_velocity<dim>(of_surface, step);
+  interface_->advance(of_interface);
   if (watched_)
-    watched_->measure(step, *interface_);
+    watched_->measure(of_interface, *interface_);
 }
 
 template <int dim>

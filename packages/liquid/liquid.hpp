@@ -29,11 +29,14 @@ class Liquid {
   void begin(const Surface& surface);
   /// Returns the free surface at the present time; valid while this object is.
   FreeSurface<dim> surface();
-  /// Extends u_ADV and u^n into the air, marks those faces in `geometry`, and moves the interface.
+  /// Extends u_ADV and u^n into air without mass, marks those faces in `geometry`, and moves the
+  /// interface.
   /// Halos must be valid, and are so afterwards. Collective.
   void advance(const InterfaceStep<dim>& step, MacGeometry<dim>& geometry,
                FaceField<dim>& advection_velocity, FaceField<dim>& velocity);
 
+  bool has_gas() const { return gas_density_ > 0; }  ///< above the surface is a fluid, too
+  double gas_density() const { return gas_density_; }
   double tension() const { return parameters_.tension; }  ///< surface tension [N/m]
   bool tension_is_implicit() const {
     return parameters_.tension > 0 && parameters_.tension_is_implicit;
@@ -57,10 +60,15 @@ class Liquid {
   std::vector<std::string> watch_names() const;
 
  private:
+  /// Extends velocities from the liquid into what `state` marks as air. Collective.
+  void extend(const InterfaceStep<dim>& step, const std::vector<char>& near, GridState<dim>& state,
+              FaceField<dim>& advection_velocity, FaceField<dim>& velocity) const;
+
   const MacDomain<dim>& domain_;
   FreeSurfaceParameters parameters_;
   /// Restoring acceleration of waves of number 1/h: by gravity, body force and tension [m/s^2].
   double short_wave_acceleration_ = 0;
+  double gas_density_ = 0;  ///< density of the fluid above [kg/m^dim]; 0: air without mass
   bool starts_empty_ = false;
   CellField filter_shift_;      ///< interface filter: distance of the pressure's phi ahead of the
                                 ///< interface's [m]

@@ -138,6 +138,10 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
   declare_named_sublists(list, "Liquid",
                          "Shapes of the liquid at the start: their union, outside of solids.",
                          liquid_schemas<dim>());
+  declare_named_sublists(list, "Bubbles",
+                         "Shapes of air or gas within the liquid at the start: their union is no "
+                         "liquid.",
+                         liquid_schemas<dim>());
   declare_optional<ParameterArray<double>>(
       list, "Dry Points",
       "Points below the surface, a component an axis, one after the other [m]: what can be reached "
@@ -171,19 +175,90 @@ FreeSurfaceParameters read_free_surface(const ParameterList& list) {
           list.get<std::string>("Time Integration") == "semi-implicit"};
 }
 
+void declare_phases(ParameterList& fluid) {
+  ParameterList& phases = declare_optional_list(
+      fluid, "Phases",
+      "Two incompressible fluids, one below and one above the surface of \"Free Surface\", with "
+      "pressure, momentum and solids in both. Absent: \"Density\" and \"Viscosity\" are those of "
+      "the one fluid, and air above a free surface has no mass.");
+  for (const auto& [name, density] : {std::pair("Liquid", 1000.0), std::pair("Gas", 1.2)}) {
+    ParameterList& phase = declare_list(phases, name, "The fluid on this side of the surface.");
+    declare_positive(phase, "Density", density, "Density [kg/m^3] (2D: [kg/m^2]).");
+    declare_at_least(phase, "Viscosity", 0.0, 0.0, "Dynamic viscosity mu [Pa s].");
+  }
+  declare_choice(
+      phases, "Interface Transport", "consistent", {"consistent", "plain"},
+      "Of velocities within two cells of the surface. consistent: mass and momentum "
+      "go by one flux, so that a heavy drop flies on. plain: as anywhere else, which lets "
+      "light gas push heavy liquid, to show what that costs.");
+}
+
+Phases read_phases(const ParameterList& fluid) {
+  Phases phases;
+  if (!fluid.isSublist("Phases")) {
+    phases.liquid = {fluid.get<double>("Density"), fluid.get<double>("Viscosity")};
+    return phases;
+  }
+  const auto read = [&](const char* name) {
+    const ParameterList& phase = fluid.sublist("Phases").sublist(name);
+    return Phase{phase.get<double>("Density"), phase.get<double>("Viscosity")};
+  };
+  phases = {read("Liquid"), read("Gas"),
+            fluid.sublist("Phases").get<std::string>("Interface Transport") == "consistent"};
+  check_input(fluid.isSublist("Free Surface"),
+              "\"Fluid\" has \"Phases\", but nothing says where each of them is; add the list "
+              "\"Free Surface\" with its \"Liquid\".");
+  check_input(phases.gas->density <= phases.liquid.density,
+              "In \"Phases\", \"Gas\" has a density of {:g}, more than \"Liquid\" with {:g}. The "
+              "surface moves with the liquid, so that must be the denser one: swap them, and give "
+              "the place of the other in \"Free Surface\".",
+              phases.gas->density, phases.liquid.density);
+  for (const char* name : {"Density", "Viscosity"})
+    check_input(fluid.getEntry(name).isDefault(),
+                "\"Fluid\" has \"Phases\" and a \"{}\" of its own; leave that out, each phase "
+                "has one.",
+                name);
+  check_input(!fluid.isSublist("Moving Tiles"),
+              "\"Phases\" has a gas, but with \"Moving Tiles\" most of it would have no cells; "
+              "leave them out.");
+  check_input(fluid.sublist("Free Surface").get<std::string>("Trapped Air") == "massless",
+              "\"Phases\" has a gas, which resists by itself where it is closed in; leave out "
+              "\"Trapped Air\".");
+  return phases;
+}
+
+namespace {
+template <int dim>
+std::vector<SignedDistance<dim>> read_shapes(const ParameterList& shapes,
+                                             const Point<dim>& gravity) {
+  std::vector<SignedDistance<dim>> parts;
+  for (auto it = shapes.begin(); it != shapes.end(); ++it) {
+    const std::string& name = shapes.name(it);
+    const ParameterList& shape = shapes.sublist(name);
+    const auto type = shape.get<std::string>("Type");
+    parts.push_back(type == "level"  ? level<dim>(name, shape, gravity)
+                    : type == "box"  ? box<dim>(name, shape)
+                    : type == "mesh" ? mesh<dim>(name, shape)
+                                     : ball<dim>(shape));
+  }
+  return parts;
+}
+
+/// Distance from the union of shapes.
+template <int dim>
+double nearest_of(const std::vector<SignedDistance<dim>>& parts, const Point<dim>& x) {
+  double nearest = very_far;
+  for (const SignedDistance<dim>& part : parts)
+    nearest = std::min(nearest, part(x));
+  return nearest;
+}
+}  // namespace
+
 template <int dim>
 SignedDistance<dim> read_liquid(const ParameterList& fluid, const Point<dim>& gravity) {
-  const ParameterList& liquids = fluid.sublist("Free Surface").sublist("Liquid");
-  std::vector<SignedDistance<dim>> parts;
-  for (auto it = liquids.begin(); it != liquids.end(); ++it) {
-    const std::string& name = liquids.name(it);
-    const ParameterList& liquid = liquids.sublist(name);
-    const auto type = liquid.get<std::string>("Type");
-    parts.push_back(type == "level"  ? level<dim>(name, liquid, gravity)
-                    : type == "box"  ? box<dim>(name, liquid)
-                    : type == "mesh" ? mesh<dim>(name, liquid)
-                                     : ball<dim>(liquid));
-  }
+  const ParameterList& list = fluid.sublist("Free Surface");
+  auto parts = read_shapes<dim>(list.sublist("Liquid"), gravity);
+  auto bubbles = read_shapes<dim>(list.sublist("Bubbles"), gravity);
   const ParameterList& sources = fluid.sublist("Sources");
   bool has_source = false;
   for (auto it = sources.begin(); it != sources.end(); ++it)
@@ -192,11 +267,8 @@ SignedDistance<dim> read_liquid(const ParameterList& fluid, const Point<dim>& gr
       !parts.empty() || has_source,
       "\"Free Surface\" has no liquid; say where it is in the list \"Liquid\", or have one of "
       "\"Fluid/Sources\" bring it.");
-  return [parts = std::move(parts)](const Point<dim>& x) {
-    double nearest = very_far;
-    for (const SignedDistance<dim>& part : parts)
-      nearest = std::min(nearest, part(x));
-    return nearest;
+  return [parts = std::move(parts), bubbles = std::move(bubbles)](const Point<dim>& x) {
+    return std::max(nearest_of<dim>(parts, x), -nearest_of<dim>(bubbles, x));
   };
 }
 
@@ -262,9 +334,9 @@ void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
                         const std::array<bool, dim>& periodic) {
   for (const char* scalar : {"Smoke", "Temperature"})
     check_input(
-        !fluid.isSublist(scalar),
-        "\"{}\" and \"Free Surface\" are both given, but a liquid with a surface carries no "
-        "scalars yet; leave one of them out.",
+        !fluid.isSublist(scalar) || fluid.isSublist("Phases"),
+        "\"{}\" and \"Free Surface\" are both given, but below air without mass a liquid "
+        "carries no scalars; give the air a mass with \"Phases\", or leave one of them out.",
         scalar);
   check_input(
       fluid.get<int>("Order in Time") != 2,

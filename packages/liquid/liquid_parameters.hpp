@@ -1,9 +1,32 @@
 #pragma once
+#include <algorithm>
+#include <optional>
+
 #include "liquid/common/interface_model.hpp"
 #include "liquid/gas/gas_bubbles.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
+
+/// One of two incompressible fluids.
+struct Phase {
+  double density = 0;    ///< [kg/m^dim]
+  double viscosity = 0;  ///< dynamic [Pa s]
+};
+
+struct Phases {
+  Phase liquid;
+  std::optional<Phase> gas;  ///< what is above the surface; none: air without mass, p = 0
+  bool transport_is_consistent = true;  ///< mass and momentum near the surface by one flux
+  double largest_viscosity() const {
+    return std::max(liquid.viscosity, gas ? gas->viscosity : 0.0);
+  }
+};
+
+/// Declares the list "Phases" of a fluid.
+void declare_phases(ParameterList& fluid);
+/// Reads a validated list "Fluid". Throws InputError if phases contradict other parameters.
+Phases read_phases(const ParameterList& fluid);
 
 /// Parameters of a free surface, beside those of its interface model.
 struct FreeSurfaceParameters {

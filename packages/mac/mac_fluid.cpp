@@ -9,6 +9,7 @@
 #include "mac/parts/prescribed_sides.hpp"
 #include "mac/pressure/extended_pressure.hpp"
 #include "mac/pressure/pressure_system.hpp"
+#include "mac/transport/interface_transport.hpp"
 #include "staggered/state/face_moments.hpp"
 #include "transport/uncovered_samples.hpp"
 
@@ -98,7 +99,7 @@ RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
                              flow_.accepted_pressure, at_rest);
   // Viscosity would hand on what light faces get for a moment, and they give it back a
   // thousandfold.
-  if (liquid_ && viscosity_.acts())
+  if (liquid_ && !flow_.liquid->has_gas() && viscosity_.acts())
     liquid_->bound_pressure(pressure);
   const auto values = result->getDataNonConst();
   int row = 0;
@@ -273,7 +274,7 @@ TransportSetting<dim> MacFluid<dim>::transport_setting(double time, double dt,
                                 flow_.nearby,
                                 {},
                                 dt,
-                                parameters.viscosity.viscosity / parameters.density,
+                                parameters.phases.liquid.viscosity / parameters.density,
                                 parameters.advection == AdvectionScheme::cubic ? 2 : 1};
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
@@ -310,6 +311,10 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
       liquid_ ? max_all(flow_.domain.grid.comm(), GlobalIndex(differs)) > 0 : differs;
   FaceField<dim> own = has_own ? flow_.prediction : FaceField<dim>();
   FaceField<dim>& advection = has_own ? own : flow_.velocity;
+  std::unique_ptr<InterfaceTransport<dim>> near_interface;  // at t^n
+  if (flow_.parameters.phases.gas && flow_.parameters.phases.transport_is_consistent)
+    near_interface = std::make_unique<InterfaceTransport<dim>>(
+        flow_.domain, flow_.geometry, flow_.liquid->interface().distance(), advection, dt);
   if (liquid_)
     liquid_->move(time, dt, surface, advection);
   const TransportSetting<dim> setting = transport_setting(time, dt, surface, advection);
@@ -323,6 +328,8 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
   } else {
     transport.advect_faces(scheme, flow_.velocity, flow_.prediction);
   }
+  if (near_interface)
+    near_interface->advect(flow_.velocity, flow_.prediction);
   flow_.domain.halo.fill(flow_.prediction);
   advect_scalars(transport);
   invalid_ = transport.invalid();

@@ -10,8 +10,8 @@
 
 namespace lockstep {
 
-/// A single-phase fluid on a staggered Cartesian grid of tiles. Every cell whose centre is not
-/// inside a closed solid is fluid, or air where it is above a free surface.
+/// A fluid of one phase or two on a staggered Cartesian grid of tiles. Every cell whose centre is
+/// not inside a closed solid is fluid, or air where it is above a free surface.
 ///
 /// The time of walls and inflows that ramp up is that of the last `add_forces`, time + dt.
 template <int dim>

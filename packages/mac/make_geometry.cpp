@@ -230,7 +230,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
     fractions = find_open_fractions(domain, rule, marks, geometry);
     open_cut_cells<dim>(domain, fractions, geometry);
   }
-  if (free_surface)
+  const bool has_air = free_surface && !free_surface->has_gas();
+  if (has_air)
     empty_dry_cells(grid, *free_surface, state.cells);
   if (free_surface && free_surface->gas)
     find_bubbles<dim>(*free_surface, marks, fractions, geometry);
@@ -278,9 +279,11 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   if (state.surface)
     add_contact_patches(domain, geometry);
   complete_ghost_faces(domain, geometry);
-  if (free_surface)
+  if (has_air)
     set_distance_factor_to_air(domain, *free_surface, geometry);
   share_open_fractions(domain, geometry);
+  if (free_surface && free_surface->has_gas())
+    set_phase_densities(domain, *free_surface, geometry);
   return geometry;
 }
 

@@ -13,15 +13,18 @@ std::vector<double> fluid_masses(const std::vector<ControlVolume<dim>>& volumes,
                                  const LiquidFluid<dim>* liquid) {
   std::vector<double> masses(volumes.size(), 0);
   for (std::size_t f = 0; f < volumes.size(); ++f) {
-    double fluid = 0;
     if (volumes[f].only_gas())
       continue;
-    if (liquid)
-      fluid = wet_volume<dim>(volumes[f], surface, whole_cell, *liquid);
-    else
-      fluid = volumes[f].box.volume() -
-              (whole_cell ? 0 : solid_volume_in_box<dim>(surface, volumes[f].box));
-    masses[f] = volumes[f].density * std::max(0., fluid);
+    const auto outside_of_solids = [&] {
+      const double solid = whole_cell ? 0 : solid_volume_in_box<dim>(surface, volumes[f].box);
+      return std::max(0., volumes[f].box.volume() - solid);
+    };
+    const double fluid =
+        liquid ? std::max(0., wet_volume<dim>(volumes[f], surface, whole_cell, *liquid))
+               : outside_of_solids();
+    masses[f] = volumes[f].density * fluid;
+    if (liquid && liquid->gas_density() > 0)
+      masses[f] += liquid->gas_density() * std::max(0., outside_of_solids() - fluid);
   }
   return masses;
 }

@@ -20,18 +20,20 @@ using Cell = std::array<int, 3>;
 class FacePart {
  public:
   explicit FacePart(float unit) : unit_(unit) {}
-  float operator()(float face) const {
-    if (face == unit_)
+  float operator()(float face) const { return (*this)(face, unit_); }
+  /// `regular`: the coupling of a regular face in the fluid there.
+  float operator()(float face, float regular) const {
+    if (face == regular)
       return 0.5F * face;
     constexpr float steps = 1 << 20;
-    return std::round(steps * face / (unit_ + face)) * (unit_ / steps);
+    return std::round(steps * face / (regular + face)) * (regular / steps);
   }
 
  private:
   float unit_;
 };
 
-/// Couplings below this part of the regular one are what differences of sums leave.
+/// Couplings below this part of a regular one are what differences of sums leave.
 constexpr float round_off = 1e-5F;
 
 /// Adds the parts of pairs of a fine row to a coarse one.
@@ -70,6 +72,8 @@ class Coarsening {
   }
 
   void sum_rows();
+  void sum_phases(std::ptrdiff_t row, int n, const std::array<bool, 3>& is_coarse_face,
+                  std::ptrdiff_t to);
   void sum_part(const Cell& begin, int n);
   void move(const std::vector<char>& destinations);
   Transfer take_transfer() { return std::move(transfer_); }
@@ -124,6 +128,14 @@ class Coarsening {
     }
     return true;
   }
+  /// Between two fluids a face is regular if it couples no less than one in the denser of them.
+  float part_of_face(int axis, std::ptrdiff_t at) const {
+    const float face = fine_.lower[axis][at];
+    if (fine_.regular.empty())
+      return face_part_(face);
+    const float denser = std::min(fine_.regular[at], fine_.regular[at - f_.natural_stride[axis]]);
+    return face_part_(face, std::max(face, denser));
+  }
   void add_face(const Cell& a, const Cell& b, float value);
   void move_face(const Cell& upper, int axis, const std::vector<char>& destinations);
   void move_cell(const Cell& cell, char destination);
@@ -161,11 +173,28 @@ void Coarsening::sum_part(const Cell& begin, int n) {
     add_pairs(
         fine_.reaction.data() + row, n, [](float value) { return value; },
         coarse_.reaction.data() + to);
+  if (!fine_.regular.empty()) {
+    sum_phases(row, n, {true, (begin[1] & 1) == 0, f_.dimension == 3 && (begin[2] & 1) == 0}, to);
+    return;
+  }
   add_even(fine_.lower[0].data() + row, n, face_part_, coarse_.lower[0].data() + to);
   if ((begin[1] & 1) == 0)
     add_pairs(fine_.lower[1].data() + row, n, face_part_, coarse_.lower[1].data() + to);
   if (f_.dimension == 3 && (begin[2] & 1) == 0)
     add_pairs(fine_.lower[2].data() + row, n, face_part_, coarse_.lower[2].data() + to);
+}
+
+/// The faces of a part of a row whose fluids differ, and what a regular face of the coarse cells
+/// is: the mean of the fine ones, and twice that in 3D, where it has four times the area.
+void Coarsening::sum_phases(std::ptrdiff_t row, int n, const std::array<bool, 3>& is_coarse_face,
+                            std::ptrdiff_t to) {
+  constexpr float part = 0.25F;
+  add_pairs(
+      fine_.regular.data() + row, n, [part](float value) { return part * value; },
+      coarse_.regular.data() + to);
+  for (int axis = 0; axis < f_.dimension; ++axis)
+    for (int i = 0; is_coarse_face[axis] && i < n; i += axis == 0 ? 2 : 1)
+      coarse_.lower[axis][to + i / 2] += part_of_face(axis, row + i);
 }
 
 /// Adds to the face between two coarse cells; cells that are not neighbours have none, and their
@@ -189,7 +218,7 @@ void Coarsening::move_face(const Cell& upper, int axis, const std::vector<char>&
   Cell lower = upper;
   --lower[axis];
   const std::ptrdiff_t at = f_.natural(upper[0], upper[1], upper[2]);
-  const float value = face_part_(fine_.lower[axis][at]);
+  const float value = part_of_face(axis, at);
   if (value == 0)
     return;
   const char of_upper = destinations[at];
@@ -284,6 +313,8 @@ std::vector<std::vector<float>*> sums_of(NaturalStencil& stencil, int dimension)
   std::vector<std::vector<float>*> arrays{&stencil.dirichlet};
   if (!stencil.reaction.empty())
     arrays.push_back(&stencil.reaction);
+  if (!stencil.regular.empty())
+    arrays.push_back(&stencil.regular);
   for (int axis = 0; axis < dimension; ++axis)
     arrays.push_back(&stencil.lower[axis]);
   return arrays;
@@ -297,12 +328,14 @@ std::vector<float*> data_of(const std::vector<std::vector<float>*>& arrays) {
 }
 
 /// Sets values to zero that are only the round-off of differences of sums: they are no coupling.
-void clean_round_off(std::vector<float>& values) {
+/// `regular`: of each cell, where fluids differ; of a face's two cells that of the upper.
+void clean_round_off(const std::vector<float>& regular, std::vector<float>& values) {
   float largest = 0;
   for (const float value : values)
     largest = std::max(largest, value);
-  for (float& value : values)
-    value = value < round_off * largest ? 0 : value;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (values[i] < round_off * (regular.empty() ? largest : regular[i]))
+      values[i] = 0;
 }
 
 /// Moves to `coarse` what ranks have added to each other's cells in `landed`, which is `coarse`
@@ -319,7 +352,7 @@ void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_al
     level.halo.sum_natural_to_owner(data_of(arrays));
   for (std::vector<float>* values : arrays) {
     if (moved)
-      clean_round_off(*values);
+      clean_round_off(coarse.regular, *values);
   }
   for (int axis = 0; axis < level.grid.dimension; ++axis) {
     if (blocks.periodic[axis] && level.grid.n[axis] == 1)
@@ -332,11 +365,11 @@ void collect(const LayoutLevel& level, const LatticeBlocks& blocks, bool from_al
 Transfer coarsen(const LayoutLevel& fine_level, const NaturalStencil& fine,
                  const LayoutLevel& coarse_level, const LatticeBlocks& blocks,
                  const CoarseningFactors& factors, NaturalStencil& coarse) {
-  const bool has_reaction = !fine.reaction.empty();
-  coarse.resize(coarse_level.grid, has_reaction);
+  const bool has_reaction = !fine.reaction.empty(), has_phases = !fine.regular.empty();
+  coarse.resize(coarse_level.grid, has_reaction, has_phases);
   NaturalStencil elsewhere;
   if (coarse_level.landing)
-    elsewhere.resize(coarse_level.landing->grid, has_reaction);
+    elsewhere.resize(coarse_level.landing->grid, has_reaction, has_phases);
   NaturalStencil& landed = coarse_level.landing ? elsewhere : coarse;
   Coarsening step(fine_level, fine, coarse_level.as_landed(), blocks, factors, landed);
   step.sum_rows();

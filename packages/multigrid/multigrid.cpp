@@ -65,7 +65,7 @@ void Multigrid<dim>::copy_to_natural(const FaceCoefficients& coefficients,
                                      NaturalStencil& natural) const {
   const LevelGrid& grid = layout_->finest();
   const LatticeBlocks& blocks = layout_->blocks();
-  natural.resize(grid, coefficients.reaction.has_value());
+  natural.resize(grid, coefficients.reaction.has_value(), coefficients.regular.has_value());
   const int width = blocks.width;
   for (std::size_t block = 0; block < blocks.begins.size(); ++block) {
     std::array<int, 3> n{1, 1, 1}, low{};
@@ -86,6 +86,9 @@ void Multigrid<dim>::copy_to_natural(const FaceCoefficients& coefficients,
         if (coefficients.reaction)
           std::copy_n(coefficients.reaction->data() + from, std::max(n[0], 0),
                       natural.reaction.data() + to);
+        if (coefficients.regular)
+          std::copy_n(coefficients.regular->data() + from, std::max(n[0], 0),
+                      natural.regular.data() + to);
       }
     }
   }

@@ -45,11 +45,12 @@ struct EvenDiagonal {
 
 }  // namespace
 
-void NaturalStencil::resize(const LevelGrid& grid, bool has_reaction) {
+void NaturalStencil::resize(const LevelGrid& grid, bool has_reaction, bool has_phases) {
   for (int axis = 0; axis < grid.dimension; ++axis)
     lower[axis].assign(grid.n_natural, 0);
   dirichlet.assign(grid.n_natural, 0);
   reaction.assign(has_reaction ? grid.n_natural : 0, 0);
+  regular.assign(has_phases ? grid.n_natural : 0, 0);
   diagonal.assign(grid.n_natural, 0);
   active.assign(grid.n_natural, 0);
 }
@@ -60,6 +61,8 @@ void NaturalStencil::complete(const LayoutLevel& level) {
   std::vector<float*> faces;
   for (int axis = 0; axis < grid.dimension; ++axis)
     faces.push_back(lower[axis].data());
+  if (!regular.empty())
+    faces.push_back(regular.data());
   halo.fill_natural(faces);
   for (int k = 0; k < grid.n[2]; ++k) {
     for (int j = 0; j < grid.n[1]; ++j) {

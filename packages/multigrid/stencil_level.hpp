@@ -14,10 +14,12 @@ struct NaturalStencil {
   std::array<std::vector<float>, 3> lower;
   std::vector<float> dirichlet;
   std::vector<float> reaction;  ///< empty: none, on any rank
+  /// Coupling through a whole face in the fluid of a cell; empty: the level's regular one.
+  std::vector<float> regular;
   std::vector<float> diagonal;  ///< sum of the cell's faces and those two, as its owner has it
   std::vector<char> active;     ///< the cell is an unknown, here or, of ghosts, on its own rank
 
-  void resize(const LevelGrid& grid, bool has_reaction);
+  void resize(const LevelGrid& grid, bool has_reaction, bool has_phases);
   /// Fills `diagonal`, `active` and the ghosts of `lower` from the owned values, as deep as the
   /// level's ghosts go. Collective.
   void complete(const LayoutLevel& level);

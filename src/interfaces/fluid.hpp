@@ -49,11 +49,11 @@ struct PressureSide {
 /// velocities stand at nodes, along all axes, and would need a coupling of their own.
 template <int dim>
 struct ControlVolume {
-  int direction = 0;                            ///< axis of its velocity
-  Point<dim> center = Point<dim>::Zero();       ///< R_f [m]
-  Box<dim> box;                                 ///< the dual cell; half of it at an open side
-  double density = 0;                           ///< density of its fluid [kg/m^3]
-  double area = 0;                              ///< area of the face, V |G| [m^(dim-1)]
+  int direction = 0;                       ///< axis of its velocity
+  Point<dim> center = Point<dim>::Zero();  ///< R_f [m]
+  Box<dim> box;                            ///< the dual cell; half of it at an open side
+  double density = 0;  ///< density of the fluid, or of the liquid below a gas [kg/m^dim]
+  double area = 0;     ///< area of the face, V |G| [m^(dim-1)]
   std::array<PressureSide<dim>, 2> sides;       ///< lower, upper along `direction`
   double open_fraction = 1;                     ///< alpha_f, as the coupling's rule answered
   Point<dim> open_center = Point<dim>::Zero();  ///< where its fluid moves: R_f unless partly open

@@ -54,16 +54,17 @@ struct LiquidReport {
 
 /// Height of the free surface around a solid, along the vertical -g/|g|. Global.
 struct WaterLevel {
-  bool known = false;    ///< false: there is no free surface, or no gravity
-  bool is_wet = false;   ///< liquid is at the solid, in its sight
-  bool pierces = false;  ///< air comes near the solid: it pierces the surface, or is above it
+  bool known = false;   ///< false: there is no free surface, or no gravity
+  bool is_wet = false;  ///< liquid is at the solid, in its sight
+  bool pierces =
+      false;  ///< air or gas comes near the solid: it pierces the surface, or is above it
   /// Mean of the places where liquid meets air: of those near the solid that it sees, if there are
   /// any, else of all [m].
   double height = 0;
 };
 
-/// Side interface of fluids: a liquid with a free surface, on which the air exerts no pressure (p =
-/// 0).
+/// Side interface of fluids: a liquid with a surface, above which is a gas, or air that exerts no
+/// pressure (p = 0).
 template <int dim>
 class LiquidFluid {
  public:
@@ -76,6 +77,8 @@ class LiquidFluid {
   virtual std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const = 0;
   /// By solid of the frozen surface. Collective.
   virtual std::vector<WaterLevel> levels_at_solids() const = 0;
+  /// Density of the gas above [kg/m^dim]; 0: air has no mass. Local.
+  virtual double gas_density() const { return 0; }
   virtual LiquidReport report() const = 0;
   virtual bool traps_gas() const { return false; }  ///< reports have `gas`. Local.
   virtual bool has_drops() const { return false; }  ///< reports have `drops`. Local.

@@ -36,13 +36,17 @@ struct FaceCoefficients {
   /// By cell: coefficient of the face to its lower neighbour along each axis, 0 without coupling.
   std::array<std::vector<float>, 3> lower;
   std::vector<float> dirichlet;  ///< by cell: what fixed pressures beside it add to the diagonal
-  /// A cell beside fixed pressures whose diagonal single precision does not hold.
+  /// A cell whose diagonal single precision does not hold: beside fixed pressures, or where two
+  /// phases meet.
   struct StiffCell {
     int cell = 0;
     double dirichlet = 0;  ///< in full
     double diagonal = 0;   ///< with that
   };
   std::vector<StiffCell> stiff;  ///< in rising order
+  /// By cell: the coefficient of a whole face in its fluid; null, on all ranks: 1, that of one
+  /// fluid.
+  std::optional<std::vector<float>> regular;
   /// By cell: what gives way to the pressure in it. Null on all ranks or on none: a rank without
   /// cells has an empty one. A fluid has none.
   std::optional<std::vector<float>> reaction;

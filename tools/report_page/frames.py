@@ -98,12 +98,12 @@ class FramePacker:
 
     @staticmethod
     def _without_fluid(box):
-        """Cells without values: those in solids and, above a liquid's surface, in the air."""
+        """Cells without values: those in solids and, above a liquid's surface, in air without mass."""
         none = numpy.zeros(box.n_cells[::-1], bool)
-        if "phi" in box.fields:
-            none |= box.values("phi").reshape(none.shape) >= 0
         if "fluid" in box.fields:
             none |= box.values("fluid").reshape(none.shape) == 0
+        elif "phi" in box.fields:
+            none |= box.values("phi").reshape(none.shape) >= 0
         return none
 
     def _field(self, box, name, none, is_whole):

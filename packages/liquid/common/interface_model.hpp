@@ -65,6 +65,9 @@ class InterfaceModel : public PlugIn {
   /// phi [m] on all stored cells, ghosts included, extrapolated into solids; cut off at the edges
   /// of the narrow band, +- `band()` h.
   virtual const CellField& distance() const = 0;
+  /// True if the interface moves by what flows through faces, for which a velocity without
+  /// divergence on both sides is best; false: with the velocity of the liquid. Local.
+  virtual bool moves_by_fluxes() const { return false; }
   /// The part of the way from the centre of a wet cell to that of its dry neighbour that is under
   /// water, in (0, 1]. Default: phi is linear between them.
   virtual double crossing(int wet_cell, int dry_cell) const {

@@ -41,6 +41,7 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   void advance(const InterfaceStep<dim>& step) override;
   const CellField& distance() const override { return phi_; }
   int band(double largest_displacement) const override;
+  bool moves_by_fluxes() const override { return true; }
   LiquidLedger ledger() const override;
   WatchedLiquid liquid_in(const std::vector<char>& cells) const override;
 

@@ -1,5 +1,7 @@
 #include "liquid/surface/free_surface.hpp"
 
+#include <algorithm>
+
 namespace lockstep {
 
 namespace {
@@ -15,6 +17,35 @@ void empty_dry_cells(const TiledGrid<dim>& grid, const FreeSurface<dim>& free_su
     if (cells[cell] == CellState::fluid && !free_surface.wet(cell))
       cells[cell] = CellState::air;
   });
+}
+
+template <int dim>
+void set_phase_densities(const MacDomain<dim>& domain, const FreeSurface<dim>& free_surface,
+                         MacGeometry<dim>& geometry) {
+  const TiledGrid<dim>& grid = domain.grid;
+  const double liquid = geometry.face_table.regular().density, gas = free_surface.gas_density;
+  const auto part_of_liquid = [&](const FaceCells& face) {
+    if (face.lower < 0 || face.upper < 0)
+      return free_surface.wet(std::max(face.lower, face.upper)) ? 1.0 : 0.0;
+    const bool lower = free_surface.wet(face.lower), upper = free_surface.wet(face.upper);
+    if (lower == upper)
+      return lower ? 1.0 : 0.0;
+    return lower ? free_surface.crossing(face.lower, face.upper)
+                 : free_surface.crossing(face.upper, face.lower);
+  };
+  geometry.lightness.assign(grid.n_stored_cells(), 1);
+  grid.for_each_stored_cell([&](int cell) {
+    if (!free_surface.wet(cell))
+      geometry.lightness[cell] = static_cast<float>(liquid / gas);
+  });
+  for (int axis = 0; axis < dim; ++axis)
+    for (int cell = 0; cell < grid.n_stored_cells(); ++cell) {
+      const FaceCells face = cells_of_face(grid, geometry.state.cells, axis, cell);
+      if (face.lower < 0 && face.upper < 0)
+        continue;
+      if (const double part = part_of_liquid(face); part < 1)
+        geometry.face_table.set_density(axis, cell, part * liquid + (1 - part) * gas);
+    }
 }
 
 template <int dim>
@@ -48,6 +79,8 @@ template void empty_dry_cells<2>(const TiledGrid<2>&, const FreeSurface<2>&,
                                  std::vector<CellState>&);
 template void empty_dry_cells<3>(const TiledGrid<3>&, const FreeSurface<3>&,
                                  std::vector<CellState>&);
+template void set_phase_densities<2>(const MacDomain<2>&, const FreeSurface<2>&, MacGeometry<2>&);
+template void set_phase_densities<3>(const MacDomain<3>&, const FreeSurface<3>&, MacGeometry<3>&);
 template void set_distance_factor_to_air<2>(const MacDomain<2>&, const FreeSurface<2>&,
                                             MacGeometry<2>&);
 template void set_distance_factor_to_air<3>(const MacDomain<3>&, const FreeSurface<3>&,

@@ -9,7 +9,8 @@ namespace lockstep {
 template <int dim>
 class GasBubbles;
 
-/// The free surface at one instant, as pressures and faces see it: ghost fluid with p = 0 above it.
+/// The free surface at one instant, as pressures and faces see it: above it a gas, or ghost fluid
+/// with p = 0.
 template <int dim>
 struct FreeSurface {
   /// phi on all stored cells [m]: negative in the liquid, extrapolated into solids.
@@ -27,6 +28,9 @@ struct FreeSurface {
   bool at_true_place = true;
   GasBubbles<dim>* gas = nullptr;  ///< null: no air is closed in
 
+  double gas_density = 0;  ///< density of the fluid above it [kg/m^dim]; 0: air at p = 0
+
+  bool has_gas() const { return gas_density > 0; }
   bool wet(int cell) const { return (*distance)[cell] < 0; }
   /// Distance factor w = 1/theta of the face between them, h over the distance of the pressure from
   /// the surface.
@@ -39,6 +43,12 @@ struct FreeSurface {
 template <int dim>
 void empty_dry_cells(const TiledGrid<dim>& grid, const FreeSurface<dim>& free_surface,
                      std::vector<CellState>& cells);
+/// Sets the density of faces beside gas, that of the liquid being the regular one: the mean over
+/// the way between the pressures on both sides, rho = theta rho_liquid + (1 - theta) rho_gas, for
+/// which a pressure that is linear in each phase is exact (ghost fluid). Local.
+template <int dim>
+void set_phase_densities(const MacDomain<dim>& domain, const FreeSurface<dim>& free_surface,
+                         MacGeometry<dim>& geometry);
 /// Sets the distance factor 1/theta of faces beside air (ghost fluid: p = 0 at the free surface),
 /// for owned faces and the upper ones of owned cells. Local.
 template <int dim>

@@ -20,11 +20,12 @@ template <int dim>
 class LevelFinder {
  public:
   LevelFinder(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-              const CellField& distance, const Point<dim>& gravity)
+              const FreeSurface<dim>& free_surface, const Point<dim>& gravity)
       : grid_(domain.grid),
         geometry_(geometry),
         cells_(geometry.state.cells),
-        distance_(distance),
+        distance_(*free_surface.distance),
+        has_gas_(free_surface.has_gas()),
         up_(-gravity.normalized()),
         surface_(*geometry.state.surface) {}
 
@@ -69,8 +70,8 @@ class LevelFinder {
     const Box<dim> beside(bounds.min() - one_cell, bounds.max() + one_cell);
     for_each_cell_in(around, [&](int cell) {
       const Point<dim> center = grid_.center(cell);
-      heights.n_air += cells_[cell] == CellState::air ? 1 : 0;
-      if (heights.n_wet == 0 && cells_[cell] == CellState::fluid && beside.contains(center) &&
+      heights.n_air += is_air(cell) ? 1 : 0;
+      if (heights.n_wet == 0 && is_liquid(cell) && beside.contains(center) &&
           (is_alone || is_in_sight(solid, center)))
         heights.n_wet = 1;
       for_each_place(cell, [&](const Point<dim>& x) {
@@ -120,9 +121,7 @@ class LevelFinder {
       const int lower = grid_.neighbor(cell, axis, 0);
       if (lower < 0)
         continue;
-      const CellState own = cells_[cell], other = cells_[lower];
-      if ((own == CellState::fluid && other == CellState::air) ||
-          (own == CellState::air && other == CellState::fluid)) {
+      if ((is_liquid(cell) && is_air(lower)) || (is_air(cell) && is_liquid(lower))) {
         const double part = distance_[cell] / (distance_[cell] - distance_[lower]);
         if (!geometry_.near_surface(cell) || !parted(cell, axis))
           f(grid_.center(cell) - part * grid_.spacing() * Point<dim>::Unit(axis));
@@ -130,6 +129,11 @@ class LevelFinder {
     }
   }
 
+  bool is_air(int cell) const {
+    return has_gas_ ? cells_[cell] == CellState::fluid && distance_[cell] >= 0
+                    : cells_[cell] == CellState::air;
+  }
+  bool is_liquid(int cell) const { return cells_[cell] == CellState::fluid && !is_air(cell); }
   /// True if a solid parts a cell from the one below it: then no free surface is between them.
   bool parted(int cell, int axis) const {
     const Point<dim> x = grid_.center(cell);
@@ -159,6 +163,7 @@ class LevelFinder {
   const MacGeometry<dim>& geometry_;
   const std::vector<CellState>& cells_;
   const CellField& distance_;
+  bool has_gas_;
   Point<dim> up_;
   const SurfaceSnapshot<dim>& surface_;
   std::vector<int> candidates_;
@@ -168,20 +173,20 @@ class LevelFinder {
 template <int dim>
 std::vector<WaterLevel> find_levels_at_solids(const MacDomain<dim>& domain,
                                               const MacGeometry<dim>& geometry,
-                                              const CellField& distance,
+                                              const FreeSurface<dim>& free_surface,
                                               const Point<dim>& gravity) {
   if (!geometry.state.surface)
     return {};
   if (gravity.isZero(0))
     return std::vector<WaterLevel>(geometry.state.surface->solids().size());
-  return LevelFinder<dim>(domain, geometry, distance, gravity).find();
+  return LevelFinder<dim>(domain, geometry, free_surface, gravity).find();
 }
 
 template std::vector<WaterLevel> find_levels_at_solids<2>(const MacDomain<2>&,
-                                                          const MacGeometry<2>&, const CellField&,
-                                                          const Point<2>&);
+                                                          const MacGeometry<2>&,
+                                                          const FreeSurface<2>&, const Point<2>&);
 template std::vector<WaterLevel> find_levels_at_solids<3>(const MacDomain<3>&,
-                                                          const MacGeometry<3>&, const CellField&,
-                                                          const Point<3>&);
+                                                          const MacGeometry<3>&,
+                                                          const FreeSurface<3>&, const Point<3>&);
 
 }  // namespace lockstep

@@ -168,10 +168,12 @@ Momentum<dim> push_surface(const MacDomain<dim>& domain, const MacGeometry<dim>&
       if (geometry.state.faces[axis][face] != FaceState::free)
         return;
       const auto [lower, upper] = cells_of_face(grid, cells, axis, face);
-      if (lower < 0 || upper < 0 || cells[lower] == cells[upper] ||
-          (cells[lower] != CellState::air && cells[upper] != CellState::air))
+      const auto is_dry = [&](int cell) {
+        return surface.has_gas() ? !surface.wet(cell) : cells[cell] == CellState::air;
+      };
+      if (lower < 0 || upper < 0 || is_dry(lower) == is_dry(upper))
         return;
-      const bool is_above = cells[upper] == CellState::air;
+      const bool is_above = is_dry(upper);
       const int wet = is_above ? lower : upper, dry = is_above ? upper : lower;
       const double place = surface.at_true_place ? surface.crossing(wet, dry) : 1;
       const double kappa = curvature(domain, phi, wet, axis, is_above ? 1 : 0, place);

@@ -31,7 +31,10 @@ std::vector<double> MacLiquid<dim>::surface_distances(const std::vector<Point<di
 
 template <int dim>
 std::vector<WaterLevel> MacLiquid<dim>::levels_at_solids() const {
-  return find_levels_at_solids<dim>(flow_.domain, flow_.geometry, liquid_.interface().distance(),
+  FreeSurface<dim> surface;
+  surface.distance = &liquid_.interface().distance();
+  surface.gas_density = liquid_.gas_density();
+  return find_levels_at_solids<dim>(flow_.domain, flow_.geometry, surface,
                                     flow_.parameters.forces.gravity);
 }
 
@@ -87,7 +90,7 @@ void MacLiquid<dim>::push_surface(double dt) {
 
 /// Gravity and the shortest waves of a surface at rest: their pressure answers within a step up to
 /// about 1.3 times sqrt(h / g). Of surface tension the shortest waves must not go over more than
-/// their length (Brackbill et al. 1992, without air); implicit, it is stable to some 12 times that:
+/// their length (Brackbill et al. 1992); implicit, it is stable to some 12 times that:
 /// beyond, waves reach deeper than the layer that is held back.
 template <int dim>
 StepBound MacLiquid<dim>::largest_stable_step() const {
@@ -98,8 +101,8 @@ StepBound MacLiquid<dim>::largest_stable_step() const {
   const double tension = liquid_.tension();
   if (tension == 0)
     return by_gravity;
-  StepBound by_tension{0.28 * std::sqrt(flow_.parameters.density * h * h * h / tension),
-                       "surface tension"};
+  const double density = flow_.parameters.density + liquid_.gas_density();
+  StepBound by_tension{0.28 * std::sqrt(density * h * h * h / tension), "surface tension"};
   if (liquid_.tension_is_implicit())
     by_tension.dt *= 8;
   else

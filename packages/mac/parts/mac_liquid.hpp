@@ -18,6 +18,7 @@ class MacLiquid : public LiquidFluid<dim> {
   double surface_distance(const Point<dim>& x) const override { return liquid_.distance(x); }
   std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const override;
   std::vector<WaterLevel> levels_at_solids() const override;
+  double gas_density() const override { return liquid_.gas_density(); }
   LiquidReport report() const override { return liquid_.report(); }
   bool traps_gas() const override { return liquid_.gas() != nullptr; }
   bool has_drops() const override { return liquid_.drops() != nullptr; }

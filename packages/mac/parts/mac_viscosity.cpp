@@ -4,11 +4,25 @@
 
 namespace lockstep {
 
+namespace {
+/// With phi where there is a gas.
+template <int dim>
+ViscosityParameters present_parameters(const MacFlow<dim>& flow) {
+  ViscosityParameters parameters = flow.parameters.viscosity;
+  const Phases& phases = flow.parameters.phases;
+  if (phases.gas && parameters.viscosity > 0)
+    parameters.phases = {phases.liquid.viscosity / parameters.viscosity,
+                         phases.gas->viscosity / parameters.viscosity,
+                         &flow.liquid->interface().distance()};
+  return parameters;
+}
+}  // namespace
+
 template <int dim>
 void MacViscosity<dim>::renew() {
   if (flow_.parameters.viscosity.viscosity > 0 && !flow_.tension_is_implicit())
     viscosity_ =
-        std::make_unique<Viscosity<dim>>(flow_.domain, flow_.geometry, flow_.parameters.viscosity);
+        std::make_unique<Viscosity<dim>>(flow_.domain, flow_.geometry, present_parameters(flow_));
 }
 
 template <int dim>
@@ -18,7 +32,7 @@ void MacViscosity<dim>::renew_tension(double dt) {
   const ImplicitTension implicit{dt * flow_.liquid->tension(),
                                  &flow_.liquid->interface().distance()};
   viscosity_ = std::make_unique<Viscosity<dim>>(flow_.domain, flow_.geometry,
-                                                flow_.parameters.viscosity, implicit);
+                                                present_parameters(flow_), implicit);
 }
 
 template <int dim>

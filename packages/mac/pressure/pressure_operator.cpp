@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "linear/row_builder.hpp"
 
@@ -17,6 +18,19 @@ constexpr double largest_exact = 8;
 double rounded_for_sums(double value) {
   constexpr double steps = 1 << 20;
   return value > largest_exact ? value : std::round(value * steps) / steps;
+}
+
+/// True if single precision adds up these coefficients without rounding: all are multiples of the
+/// last digit of their sum. Those of two phases need not be.
+template <int dim>
+bool add_up_exactly(const std::array<double, 2 * dim>& coefficients, double sum) {
+  constexpr int digits = std::numeric_limits<float>::digits;
+  int exponent = 0;
+  std::frexp(sum, &exponent);
+  return std::all_of(coefficients.begin(), coefficients.end(), [&](double coefficient) {
+    const double in_last_digits = std::ldexp(coefficient, digits - exponent);
+    return in_last_digits == std::floor(in_last_digits);
+  });
 }
 
 /// True if all faces of a strip of cells are regular and lead to fluid.
@@ -48,12 +62,15 @@ FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeomet
   result.dirichlet.assign(n, 0);
   for (int axis = 0; axis < dim; ++axis)
     result.lower[axis].assign(n, 0);
+  if (!geometry.lightness.empty())
+    result.regular = geometry.lightness;
   int row = 0;
   const auto add_cell = [&](int cell, const auto& neighbors) {
     if (cells[cell] != CellState::fluid)
       return;
     result.row[cell] = row++;
     double dirichlet = 0, faces = 0;
+    std::array<double, 2 * dim> coefficients{};
     for (int axis = 0; axis < dim; ++axis) {
       for (int end = 0; end < 2; ++end) {
         const int other = neighbors[2 * axis + end];
@@ -64,11 +81,13 @@ FaceCoefficients face_coefficients(const MacDomain<dim>& domain, const MacGeomet
         if (other < 0 || cells[other] != CellState::fluid)
           dirichlet += coefficient;
         else
-          faces += result.lower[axis][face] = static_cast<float>(coefficient);
+          faces += coefficients[2 * axis + end] = result.lower[axis][face] =
+              static_cast<float>(coefficient);
       }
     }
     result.dirichlet[cell] = static_cast<float>(rounded_for_sums(dirichlet));
-    if (dirichlet > largest_exact || result.dirichlet[cell] != dirichlet)
+    if (dirichlet > largest_exact || result.dirichlet[cell] != dirichlet ||
+        !add_up_exactly<dim>(coefficients, faces))
       result.stiff.push_back({cell, dirichlet, dirichlet + faces});
   };
   const auto regular = static_cast<float>(geometry.face_table.regular().coefficient);

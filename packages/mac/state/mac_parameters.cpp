@@ -2,7 +2,6 @@
 
 #include <map>
 
-#include "liquid/liquid_parameters.hpp"
 #include "mac/state/initial_state.hpp"
 #include "mac/tiles/moving_tiles.hpp"
 #include "staggered/domain/parameter_values.hpp"
@@ -25,6 +24,8 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
   declare_positive(list, "Density", 1000.0, "Density [kg/m^3] (2D: [kg/m^2]).");
   declare_at_least(list, "Viscosity", 0.0, 0.0,
                    "Dynamic viscosity mu [Pa s]. 0: no viscous solve at all.");
+  if (interfaces)
+    declare_phases(list);
   declare_between(list, "Smallest Link", 0.2, 0.01, 1.0,
                   "Viscous links that end on a surface are not taken shorter than this part of a "
                   "cell [1]; shorter ones would make the viscous solve stiff.");
@@ -65,8 +66,9 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
 template <int dim>
 MacParameters<dim> read_mac_parameters(const ParameterList& fluid) {
   MacParameters<dim> parameters;
-  parameters.density = fluid.get<double>("Density");
-  parameters.viscosity.viscosity = fluid.get<double>("Viscosity");
+  parameters.phases = read_phases(fluid);
+  parameters.density = parameters.phases.liquid.density;
+  parameters.viscosity.viscosity = parameters.phases.largest_viscosity();
   parameters.viscosity.smallest_coupling_fraction = fluid.get<double>("Smallest Link");
   parameters.viscosity.has_air = fluid.isSublist("Free Surface");
   parameters.forces.gravity = point_value<dim>(fluid, "Gravity");

@@ -1,5 +1,5 @@
 #pragma once
-#include "liquid/common/interface_model.hpp"
+#include "liquid/liquid_parameters.hpp"
 #include "mac/forces/forces.hpp"
 #include "mac/viscosity/viscosity.hpp"
 #include "parameters/parameter_list.hpp"
@@ -10,7 +10,8 @@ namespace lockstep {
 /// The numbers of a fluid, read once.
 template <int dim>
 struct MacParameters {
-  double density = 1000;  ///< [kg/m^3]
+  double density = 1000;  ///< density, that of the liquid if there is a gas, too [kg/m^dim]
+  Phases phases;
   ViscosityParameters viscosity;
   ForceParameters<dim> forces;
   AdvectionScheme advection = AdvectionScheme::semi_lagrangian;

@@ -6,8 +6,9 @@
 namespace lockstep {
 
 template <int dim>
-StressAtAir<dim>::StressAtAir(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry)
-    : domain_(domain), geometry_(geometry) {
+StressAtAir<dim>::StressAtAir(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                              const ViscosityField<dim>& viscosity)
+    : domain_(domain), geometry_(geometry), viscosity_(viscosity) {
   std::vector<char> plain(domain.grid.n_stored_cells(), 0);
   domain.grid.for_each_stored_cell([&](int cell) { plain[cell] = is_regular(cell); });
   is_far_from_solids_ = with_marked_surroundings(std::move(plain));
@@ -33,13 +34,20 @@ std::vector<char> StressAtAir<dim>::with_marked_surroundings(std::vector<char> m
 template <int dim>
 bool StressAtAir<dim>::is_definite() const {
   const TiledGrid<dim>& grid = domain_.grid;
-  std::vector<char> full(grid.n_stored_cells(), 0);
-  grid.for_each_stored_cell(
-      [&](int cell) { full[cell] = geometry_.state.cells[cell] != CellState::air; });
-  const std::vector<char> far_from_air = with_marked_surroundings(std::move(full));
+  std::vector<char> uniform(grid.n_stored_cells(), 0);
+  for (const double viscosity : viscosity_.of_phases()) {
+    std::vector<char> full(grid.n_stored_cells(), 0);
+    grid.for_each_stored_cell([&](int cell) {
+      full[cell] =
+          geometry_.state.cells[cell] == CellState::solid || viscosity_.of_cell(cell) == viscosity;
+    });
+    const std::vector<char> far_from_others = with_marked_surroundings(std::move(full));
+    for (std::size_t cell = 0; cell < uniform.size(); ++cell)
+      uniform[cell] |= far_from_others[cell];
+  }
   GlobalIndex found = fluid_at_open_side() ? 1 : 0;
   grid.for_each_owned_cell([&](int cell) {
-    if (is_fluid(cell) && far_from_air[cell] == 0 && is_far_from_solids_[cell] == 0)
+    if (is_fluid(cell) && uniform[cell] == 0 && is_far_from_solids_[cell] == 0)
       found = 1;
   });
   return max_all(grid.comm(), found) == 0;

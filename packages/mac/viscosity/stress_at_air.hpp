@@ -1,17 +1,21 @@
 #pragma once
 #include <vector>
 
+#include "mac/viscosity/viscosity_field.hpp"
 #include "staggered/state/mac_geometry.hpp"
 
 namespace lockstep {
 
-/// Terms that make the viscous form that of the symmetric stress beside air, where the surface is
-/// free of traction: the form is the sum over the cells of 2 mu (d_a u_a)^2, and over the edges all
-/// of whose faces have fluid of mu (d_b u_a + d_a u_b)^2. The viscous couplings of the Laplacian
-/// have half of the first, and the squares of the second. In the middle of the fluid, and beside a
-/// side whose velocity is known, the rest cancels, pair by pair of faces at right angles to each
-/// other, each of which shares a cell and an edge; in 3D but for mu (div u)^2, without which the
-/// form would not be positive.
+/// Terms that make the viscous form that of the symmetric stress beside air or gas, where the
+/// surface is free of traction: the form is the sum over the cells of 2 mu (d_a u_a)^2, and over
+/// the edges all of whose faces have fluid of mu (d_b u_a + d_a u_b)^2. The viscous couplings of
+/// the Laplacian have half of the first, and the squares of the second. In the middle of the fluid,
+/// and beside a side whose velocity is known, the rest cancels, pair by pair of faces at right
+/// angles to each other, each of which shares a cell and an edge; in 3D but for mu (div u)^2,
+/// without which the form would not be positive.
+///
+/// Where two phases meet it is the same with a mu for each cell and edge, that of air without mass
+/// being 0.
 ///
 /// The form is that of the couplings alone where solids are near. The terms that cancel in the
 /// middle leave one of either sign where that ends: they may be used only where `is_definite` says
@@ -29,7 +33,8 @@ class StressAtAir {
   };
 
   /// Makes the terms of a fluid with a free surface. References must outlive this. Collective.
-  StressAtAir(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry);
+  StressAtAir(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+              const ViscosityField<dim>& viscosity);
 
   /// True if the form is positive. It might not be if fluid beside the air has a solid near it, or
   /// fluid stands at an open side, on any rank: then the form is to be that of the couplings
@@ -38,9 +43,9 @@ class StressAtAir {
 
   /// True if a face and its neighbour across have air beside them: they are not coupled.
   bool parts(const FaceId& face, int across, int end) const;
-  /// Extra weight of couplings along a velocity's own axis, through this cell: 0 or 1.
+  /// Extra weight of couplings along a velocity's own axis, through this cell: mu or 0.
   double extra_weight(int cell) const {
-    return dim == 3 && is_fluid(cell) && is_far_from_solids_[cell] ? 1 : 0;
+    return dim == 3 && is_far_from_solids_[cell] ? viscosity_.of_cell(cell) : 0;
   }
   /// Calls f(partner) for the faces with a velocity at right angles to this one.
   template <typename Function>
@@ -76,12 +81,13 @@ class StressAtAir {
     const Edge kind = edge(face, across, end);
     if (kind == Edge::other)
       return;
+    const double of_edge = kind == Edge::whole ? viscosity_.of_edge(face, across, end) : 0;
     for (int side = 0; side < 2; ++side) {
       const int cell = side == 0 ? domain_.grid.neighbor(face.cell, face.axis, 0) : face.cell;
       const int other = end == 0 ? cell : domain_.grid.neighbor(cell, across, 1);
       if (other < 0 || !has_velocity(across, other))
         continue;
-      const double beside_air = (kind == Edge::whole ? 1 : 0) - (is_fluid(cell) ? 1 : 0);
+      const double beside_air = of_edge - viscosity_.of_cell(cell);
       const double weight = beside_air + extra_weight(cell);
       // The face is the cell's upper one if the cell is on its lower side.
       const double sign = (side == 0) == (end == 1) ? 1 : -1;
@@ -93,6 +99,7 @@ class StressAtAir {
 
   const MacDomain<dim>& domain_;
   const MacGeometry<dim>& geometry_;
+  const ViscosityField<dim>& viscosity_;
   std::vector<char> is_far_from_solids_;  ///< stored cells: all around them is plain
 };
 

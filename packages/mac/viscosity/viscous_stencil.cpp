@@ -58,9 +58,10 @@ class Builder {
         geometry_(geometry),
         grid_(domain.grid),
         parameters_(parameters),
+        viscosity_(domain, geometry, parameters.phases),
         tension_(tension.strength) {
     if (parameters.viscosity > 0 && parameters.has_air) {
-      at_air_.emplace(domain, geometry);
+      at_air_.emplace(domain, geometry, viscosity_);
       if (!at_air_->is_definite())
         at_air_.reset();
     }
@@ -138,8 +139,8 @@ class Builder {
     balance_.fill(0);
   }
 
-  /// mu area / h to the neighbour [kg/s]; the dual cell at an open side is only half as long, so it
-  /// has half the area across.
+  /// mu area / h to the neighbour [kg/s], mu being the larger one of two phases; the dual cell at
+  /// an open side is only half as long, so it has half the area across.
   double full_coefficient(int across) const {
     const double unit = parameters_.viscosity * geometry_.face_table.area() / domain_.spacing();
     return across != face_.axis && cells_.at_side() ? 0.5 * unit : unit;
@@ -173,13 +174,14 @@ class Builder {
 
   void add_link(int across, int end, RowBuilder& rows) {
     double coefficient = full_coefficient(across);
-    if (across == face_.axis) {
+    if (across != face_.axis) {
+      coefficient *= viscosity_.of_edge(face_, across, end);
+    } else {
       const int between = end == 0 ? cells_.lower : cells_.upper;
       // Beyond an open side, and in air, nothing pulls.
       if (between < 0 || geometry_.state.cells[between] != CellState::fluid)
         return;
-      if (at_air_)
-        coefficient *= 1 + at_air_->extra_weight(between);
+      coefficient *= viscosity_.of_cell(between) + (at_air_ ? at_air_->extra_weight(between) : 0);
     }
     const int other = grid_.neighbor(face_.cell, across, end);
     const FaceState state =
@@ -305,6 +307,7 @@ class Builder {
   const MacGeometry<dim>& geometry_;
   const TiledGrid<dim>& grid_;
   ViscosityParameters parameters_;
+  ViscosityField<dim> viscosity_;
   std::optional<StressAtAir<dim>> at_air_;
   double tension_ = 0;  ///< sigma dt
   std::optional<SurfaceLaplacian<dim>> along_surface_;

@@ -1,14 +1,15 @@
 #pragma once
 #include "interfaces/viscosity.hpp"
-#include "staggered/state/mac_geometry.hpp"
+#include "mac/viscosity/viscosity_field.hpp"
 
 namespace lockstep {
 
 struct ViscosityParameters {
-  double viscosity = 0;  ///< dynamic, mu [Pa s]
+  double viscosity = 0;  ///< dynamic, mu; the larger one of two phases [Pa s]
   double smallest_coupling_fraction =
       0.2;               ///< part of h [1]: a link to a surface is never taken shorter
   bool has_air = false;  ///< above a free surface: the form is that of the symmetric stress there
+  PhaseViscosities phases = {};
 };
 
 /// Implicit surface tension: sigma dt times the surface Laplacian.

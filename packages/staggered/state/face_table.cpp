@@ -13,8 +13,13 @@ FaceTable<dim>::FaceTable(const MacDomain<dim>& domain, double density)
 
 template <int dim>
 void FaceTable<dim>::derive(FaceProperties& face) const {
-  face.mass = face.density * volume_ * face.open / face.distance_factor;
   face.coefficient = face.open * face.distance_factor * (regular_.density / face.density);
+  if (face.density != regular_.density && face.open > 0) {
+    const double rounded = static_cast<float>(face.coefficient);
+    face.density *= face.coefficient / rounded;
+    face.coefficient = rounded;
+  }
+  face.mass = face.density * volume_ * face.open / face.distance_factor;
   face.gradient = face.distance_factor / (face.density * spacing_);
 }
 
@@ -40,6 +45,13 @@ template <int dim>
 void FaceTable<dim>::set_distance_factor(int axis, int cell, double distance_factor) {
   FaceProperties& face = own(axis, cell);
   face.distance_factor = distance_factor;
+  derive(face);
+}
+
+template <int dim>
+void FaceTable<dim>::set_density(int axis, int cell, double density) {
+  FaceProperties& face = own(axis, cell);
+  face.density = density;
   derive(face);
 }
 

@@ -41,6 +41,9 @@ class FaceTable {
   }
   void set_open(int axis, int cell, double open);
   void set_distance_factor(int axis, int cell, double distance_factor);
+  /// Sets the density of a face whose fluid is not the regular one. Rounds it by 6e-8, so that the
+  /// coefficient is exact in single precision, as A has it.
+  void set_density(int axis, int cell, double density);
 
   const FaceProperties& regular() const { return regular_; }
   double area() const { return area_; }  ///< area of a whole face [m^(dim-1)]

@@ -74,7 +74,7 @@ ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometr
   volume.direction = axis;
   volume.center = center_of_face(domain, geometry, axis, cell);
   volume.open_center = volume.center;
-  volume.density = geometry.face_table(axis, cell).density;
+  volume.density = geometry.face_table.regular().density;
   volume.area = geometry.face_table.area();
   volume.id = dim * grid.global_id(cell) + axis;
   const Point<dim> step = Point<dim>::Unit(axis) * half;

@@ -26,6 +26,8 @@ struct MacGeometry : FluidGeometry<dim> {
   std::vector<char> regular_tiles;
   /// Owned faces with open fraction < 1 and fluid on at least one side.
   std::vector<FaceId> coupled;
+  /// rho_0 / rho of stored cells, by the density of their own fluid; empty: all have rho_0.
+  std::vector<float> lightness;
   std::vector<FaceId> prescribed;  ///< owned faces of walls and inflows beside fluid
   std::vector<FaceId> band_edge;   ///< owned free faces to fluid at rest beyond the stored tiles
   std::vector<int> bubble;         ///< gas bubble of stored cells, or -1; empty: gas is not trapped

@@ -1,0 +1,134 @@
+"""Air and water as two incompressible phases: what is at rest rests, a heavy drop falls freely, a bubble rises as published, bodies
+and shells cross the surface, and neither ranks nor a restart change anything."""
+import math
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
+from simulation import assert_close, attempt, column, simulate, table, without_times  # noqa: E402
+
+G = 9.8
+DISC = {"Disc": {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .2}, "Position": (.5, .5), "Density": 500.6}}
+BALL = {"Ball": {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .2}, "Position": (.5, .5, .5), "Density": 500.6}}
+
+
+def scene(dimension=2, cells=32, ratio=1000 / 1.2, viscosities=(0., 0.), surface=None, sides=None, upper=None, gravity=None, step=.005, **more):
+    """A tank half full unless `surface` (the list "Free Surface") says something else; vertical is the last axis."""
+    phase = [{"Density": density, "Viscosity": viscosity} for density, viscosity in zip((1000., 1000 / ratio), viscosities)]
+    fluid = {"Gravity": gravity or (0.,) * (dimension - 1) + (-G,), "Phases": {"Liquid": phase[0], "Gas": phase[1]},
+             "Free Surface": surface or {"Liquid": {"Pool": {"Type": "level", "Height": .5}}}}
+    upper = upper or (1.,) * dimension
+    domain = {"Lower": (0.,) * dimension, "Upper": upper, "Cells": tuple(round(cells * length) for length in upper),
+              "Sides": {name: {"Type": kind} for name, kind in (sides or {}).items()}}
+    return xml("Scene", {"Dimension": dimension, "Domain": domain, "Fluid": fluid, "Time": {"End": 100., "Fixed Step": step},
+                         "Output": {"Frames": False}, **more})
+
+
+def falling_drop(ratio, **phases):
+    text = scene(cells=48, ratio=ratio, upper=(1., 2.), step=.3 / 48, surface={"Liquid": {"Drop": {"Type": "ball", "Center": (.5, 1.5), "Radius": .15}}},
+                 sides=dict.fromkeys(("x lower", "x upper", "y lower", "y upper"), "slip wall"))
+    for name, value in phases.items():
+        text = text.replace('<ParameterList name="Phases">', f'<ParameterList name="Phases">\n<Parameter name="{name}" type="string" value="{value}"/>')
+    return text
+
+
+def rising_bubble(cells):
+    """Case 1 of Hysing et al. (2009)."""
+    surface = {"Surface Tension": 24.5, "Liquid": {"All": {"Type": "box", "Lower": (-1., -1.), "Upper": (2., 3.)}},
+               "Bubbles": {"Bubble": {"Type": "ball", "Center": (.5, .5), "Radius": .25}}}
+    return scene(cells=cells, ratio=10., viscosities=(10., 1.), surface=surface, upper=(1., 2.), gravity=(0., -.98), step=.5 / cells,
+                 sides={"x lower": "slip wall", "x upper": "slip wall"})
+
+
+class TwoPhases(unittest.TestCase):
+    def run_scene(self, text, *options, ranks=1):
+        """Histories of fluid and bodies."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "scene.xml").write_text(text)
+            simulate(folder / "scene.xml", folder / "output", *options, ranks=ranks)
+            bodies = folder / "output/bodies.csv"
+            return table(folder / "output/history.csv"), table(bodies) if bodies.exists() else []
+
+    def assert_rests(self, text):
+        history, bodies = self.run_scene(text, "--steps", 20)
+        self.assertLess(max(column(history, "fluid_kinetic_energy")), 1e-12)
+        self.assertLess(max(column(history, "momentum_error")), 1e-14)
+        self.assertLess(max(column(history, "s2_iterations")), 30)
+        for row in bodies:
+            self.assertLess(max(abs(float(row[name])) for name in ("vx", "vy")), 1e-7)
+
+    def test_what_is_at_rest_rests(self):
+        """Layers at any ratio, gravity that leans, a body across the surface: pressures that are linear in each phase are exact."""
+        for number, text in enumerate((scene(), scene(ratio=1e6), scene(gravity=(3., -9.)), scene(ratio=2.), scene(3, 16),
+                     scene(surface={"Interface": {"Type": "volume of fluid"}, "Liquid": {"Pool": {"Type": "level", "Height": .47}}}),
+                     *(scene(Solids={"Disc": {**DISC["Disc"], "Density": 500 + 500 / ratio}}, Coupling={"Type": coupling}, ratio=ratio)
+                       for coupling in ("flux", "mixed face") for ratio in (1000 / 1.2, 1e6)),
+                     scene(3, 16, Solids=BALL))):
+            with self.subTest(number):
+                self.assert_rests(text)
+
+    def test_a_heavy_drop_falls_freely(self):
+        """The gas takes a thousandth of its weight. With "plain" the gas that it meets pushes it back and flattens it."""
+        def fall(text):
+            history, _ = self.run_scene(text, "--steps", 48)
+            time, momentum, volume = (column(history, name)[-1] for name in ("time", "fluid_momentum_y", "liquid_volume"))
+            return -momentum / (1000 * volume * G * time)
+        for ratio in (1e3, 1e6):
+            self.assertAlmostEqual(fall(falling_drop(ratio)), 1, delta=.015)
+        self.assertLess(fall(falling_drop(1e3, **{"Interface Transport": "plain"})), .96)
+
+    def test_a_bubble_rises_as_published(self):
+        """Hysing et al. (2009), case 1: its fastest rise is .2417 to .2421 m/s after .92 to .93 s. Volume and centroid are kept: the
+        box is closed, so that momentum is (rho_gas - rho_liquid) times the bubble's area and rise."""
+        history, _ = self.run_scene(rising_bubble(40), "--steps", 96)
+        rise = [momentum / (-900 * math.pi / 16) for momentum in column(history, "fluid_momentum_y")]
+        fastest = max(rise)
+        self.assertAlmostEqual(fastest, .2419, delta=.006)
+        self.assertAlmostEqual(column(history, "time")[rise.index(fastest)], .925, delta=.15)
+        volume = column(history, "liquid_volume")
+        self.assertLess(abs(volume[-1] - volume[0]), 1e-3 * math.pi / 16)
+        self.assertLess(max(column(history, "momentum_error")), 1e-13)
+
+    def test_bodies_and_shells_cross_the_surface(self):
+        """Free fall less the weight of the gas before a disc meets the water; momentum to round-off throughout, in both couplings, and
+        for a hanging cloth that is half in the water."""
+        disc = {"Disc": {**DISC["Disc"], "Geometry": {"Shape": "ball", "Radius": .12}, "Position": (.5, .75)}}
+        for coupling in ("flux", "mixed face"):
+            history, bodies = self.run_scene(scene(cells=48, Solids=disc, Coupling={"Type": coupling}, step=.004), "--steps", 60)
+            self.assertAlmostEqual(column(bodies, "vy")[9] / (-G * column(bodies, "time")[9]), 1, delta=.01)
+            self.assertLess(column(bodies, "y")[-1], .56)
+            self.assertLess(max(column(history, "momentum_error")), 1e-14)
+        cloth = {"Cloth": {"Type": "cloth", "Geometry": {"Shape": "sheet", "Size": (0., .4), "Normal": "x", "Mesh Spacing": .04}, "Young's Modulus": 1e5,
+                           "Thickness": .01, "Surface Density": 20., "Position": (.5, .52), "Time Integration": "fully-implicit"}}
+        history, bodies = self.run_scene(scene(Solids=cloth, step=.004), "--steps", 25)
+        self.assertLess(column(bodies, "y")[-1], .519)
+        self.assertLess(max(column(history, "momentum_error")), 1e-12)
+
+    def test_ranks_and_restart(self):
+        text = scene(cells=32, Solids=DISC, step=.004).replace("500.6", "700.0")
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "scene.xml").write_text(text)
+            for output, options, ranks in (("whole", (), 1), ("two", (), 2), ("part", ("--steps", 5), 1)):
+                simulate(folder / "scene.xml", folder / output, *(options or ("--steps", 10)), ranks=ranks)
+            simulate(folder / "scene.xml", folder / "rest", "--restart", folder / "part/checkpoint-000005.h5", "--steps", 10)
+            whole, two, rest = (table(folder / output / "history.csv") for output in ("whole", "two", "rest"))
+        assert_close(whole, two, ("fluid_momentum_y", "fluid_kinetic_energy", "solid_momentum_y"), 1e-7)
+        self.assertEqual(without_times(whole)[-1], without_times(rest)[-1])
+
+    def test_refused(self):
+        tiles = scene().replace('<ParameterList name="Phases">', '<ParameterList name="Moving Tiles"/>\n<ParameterList name="Phases">')
+        with tempfile.TemporaryDirectory() as name:
+            file = Path(name) / "scene.xml"
+            file.write_text(tiles)
+            result = attempt(file, Path(name) / "output")
+            self.assertEqual(result.returncode, 2)
+            self.assertIn('"Phases" has a gas, but with "Moving Tiles"', result.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
