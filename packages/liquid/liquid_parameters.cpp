@@ -8,6 +8,7 @@
 #include "geometry/surface_check.hpp"
 #include "geometry/surface_snapshot.hpp"
 #include "liquid/watch/watch.hpp"
+#include "parameters/field_formula.hpp"
 #include "staggered/domain/parameter_values.hpp"
 #include "staggered/domain/region_shape.hpp"
 
@@ -16,7 +17,7 @@ namespace lockstep {
 namespace {
 constexpr double very_far = 1e9;  ///< [m], from the liquid of a tank that is empty
 
-/// A level with waves a cos(k x) along the first axis across gravity.
+/// Below a height, which may depend on the place; then the distance is that to the first order.
 template <int dim>
 SignedDistance<dim> level(const std::string& name, const ParameterList& list,
                           const Point<dim>& gravity) {
@@ -26,15 +27,19 @@ SignedDistance<dim> level(const std::string& name, const ParameterList& list,
       "is; give a box, or gravity.",
       name);
   const Point<dim> up = -gravity.normalized();
-  const double height = list.get<double>("Height"), amplitude = list.get<double>("Amplitude");
-  const double k = 2 * M_PI / list.get<double>("Wavelength");
-  int along = 0;
-  while (std::abs(up[along]) > 0.9)
-    ++along;
-  return [=](const Point<dim>& x) {
-    const double phase = k * x[along];
-    const double slope = amplitude * k * std::sin(phase);
-    return (x.dot(up) - height - amplitude * std::cos(phase)) / std::sqrt(1 + slope * slope);
+  const FieldFormula<dim> height(list, "Height", "Fluid/Free Surface/Liquid/" + name);
+  return [up, height](const Point<dim>& x) {
+    const double above = x.dot(up) - height(0, x, 0);
+    if (height.is_number(0))
+      return above;
+    const double step = 6e-6 * (1 + x.norm());  // at which a central difference errs least
+    Point<dim> slope = up;
+    for (int a = 0; a < dim; ++a) {
+      const Point<dim> shift = step * Point<dim>::Unit(a);
+      slope[a] -= (height(0, x + shift, 0) - height(0, x - shift, 0)) / (2 * step);
+    }
+    const double length = slope.norm();
+    return length > 0 ? above / length : above;
   };
 }
 
@@ -83,10 +88,10 @@ SignedDistance<dim> mesh(const std::string& name, const ParameterList& list) {
 template <int dim>
 std::vector<TypedSchema> liquid_schemas() {
   ParameterList level, box, ball, mesh;
-  declare(level, "Height", 0.0, "Of the surface, measured against gravity from the origin [m].");
-  declare_at_least(level, "Amplitude", 0.0, 0.0,
-                   "Of waves on it [m], with a crest at 0 along the first axis across gravity.");
-  declare_positive(level, "Wavelength", 1.0, "Of these waves [m].");
+  declare(level, "Height", 0.0,
+          "Of the surface, measured against gravity from the origin [m]; with waves a formula of "
+          "the place [m], such as \"[0.5 + 0.1*cos(3*x)]\".");
+  set_variables(level, "Height", place<dim>());
   declare_vector(box, "Lower", filled_array(dim, 0.0), dim, "Lower corner [m].");
   declare_vector(box, "Upper", filled_array(dim, 1.0), dim, "Upper corner [m].");
   declare_vector(ball, "Center", filled_array(dim, 0.0), dim, "Centre [m].");

@@ -224,16 +224,19 @@ def fluid(world, side_lists):
         chosen["Body Force"] = world.vector(world.speed / world.dt / 10)
     scalars(world, chosen, side_lists)
     state = rng.choice(["at rest", "at rest", "uniform", "taylor green", "rotation"])
-    chosen["Initial State"] = {"Type": state}
     length = max(b - a for a, b in zip(world.lower, world.upper))
     if state == "uniform":
-        chosen["Initial State"]["Velocity"] = world.vector(world.speed)
+        chosen["Velocity"] = world.vector(world.speed)
     elif state == "taylor green":
-        chosen["Initial State"].update({"Amplitude": 0.7 * world.speed, "Wavelength": length / rng.choice([1, 2])})
+        amplitude, k = 0.7 * world.speed, 2 * math.pi / length * rng.choice([1, 2])
+        chosen["Velocity"] = [f"{amplitude}*sin({k}*x)*cos({k}*y)", f"-{amplitude}*cos({k}*x)*sin({k}*y)", "0"][:world.dimension]
     elif state == "rotation":
         rate = world.rotation(world.speed / length)
-        chosen["Initial State"].update({"Angular Velocity": [rate] if world.dimension == 2 else rate,
-                                        "Center": [(a + b) / 2 for a, b in zip(world.lower, world.upper)]})
+        center = [(a + b) / 2 for a, b in zip(world.lower, world.upper)]
+        arm = [f"({axis} - ({middle}))" for axis, middle in zip("xyz", center)]
+        w = [f"({w})" for w in (rate if world.dimension == 3 else [0, 0, rate])]
+        chosen["Velocity"] = [f"{w[1]}*{arm[2]} - {w[2]}*{arm[1]}", f"{w[2]}*{arm[0]} - {w[0]}*{arm[2]}",
+                              f"{w[0]}*{arm[1]} - {w[1]}*{arm[0]}"] if world.dimension == 3 else [f"-{w[2]}*{arm[1]}", f"{w[2]}*{arm[0]}"]
     return chosen
 
 

@@ -18,7 +18,7 @@ MacFlow<dim>::MacFlow(const ParameterList& fluid, const ParameterList& box,
       scalars(domain, fluid),
       ray_halo(domain.grid),
       blocks(lattice_blocks(domain.grid)),
-      velocity(initial_velocity<dim>(domain.grid, fluid.sublist("Initial State"))) {
+      velocity(initial_velocity<dim>(domain.grid, FieldFormula<dim>(fluid, "Velocity", "Fluid"))) {
   domain.halo.fill(velocity);
   prediction = velocity;
   scaled_pressure.assign(domain.grid.n_stored_cells(), 0.0);

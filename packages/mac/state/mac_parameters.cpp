@@ -3,7 +3,6 @@
 #include <map>
 
 #include "liquid/liquid_parameters.hpp"
-#include "mac/state/initial_state.hpp"
 #include "mac/tiles/moving_tiles.hpp"
 #include "staggered/domain/parameter_values.hpp"
 
@@ -28,6 +27,14 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
   declare_between(list, "Smallest Link", 0.2, 0.01, 1.0,
                   "Viscous links that end on a surface are not taken shorter than this part of a "
                   "cell [1]; shorter ones would make the viscous solve stiff.");
+  declare_vector(list, "Velocity", filled_array(dim, 0.0), dim,
+                 dim == 2 ? "Velocity at the start [m/s]; formulas of the place x, y [m], such as "
+                            "\"[sin(3*x)*cos(3*y)]\". What of it has a divergence goes with the "
+                            "first step."
+                          : "Velocity at the start [m/s]; formulas of the place x, y, z [m], such "
+                            "as \"[sin(3*x)*cos(3*y)]\". What of it has a divergence goes with "
+                            "the first step.");
+  set_variables(list, "Velocity", place<dim>());
   declare_vector(list, "Gravity", filled_array(dim, 0.0), dim,
                  "Acceleration of gravity, on fluid and solids [m/s^2].");
   declare_vector(list, "Body Force", filled_array(dim, 0.0), dim,
@@ -58,7 +65,6 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
   if (interfaces)
     declare_free_surface<dim>(*interfaces, list);
   declare_moving_tiles<dim>(list);
-  declare_initial_state<dim>(list);
   return list;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "parameters/field_formula.hpp"
 #include "staggered/domain/fitting_domain.hpp"
 #include "staggered/domain/inflow_scalars.hpp"
 #include "staggered/domain/parameter_values.hpp"
@@ -72,7 +73,11 @@ MovingTiles<dim>::MovingTiles(const ParameterList& fluid, const DomainDescriptio
     asked_.push_back({read_shape<dim>(source).bounds(),
                       source.isParameter("End") ? source.get<double>("End") : for_ever});
   });
-  if (fluid.sublist("Initial State").get<std::string>("Type") != "at rest") {
+  const auto has_formula = [&](const char* scalar) {
+    return fluid.isSublist(scalar) && fluid.sublist(scalar).isParameter("Value");
+  };
+  if (!FieldFormula<dim>(fluid, "Velocity", "Fluid").vanishes() || has_formula("Smoke") ||
+      has_formula("Temperature")) {
     const Point<dim> far = Point<dim>::Constant(1e300);
     asked_.push_back({Box<dim>(-far, far), only_at_start});
   }

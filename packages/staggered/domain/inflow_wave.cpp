@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "parameters/field_formula.hpp"
 #include "staggered/domain/parameter_values.hpp"
 
 namespace lockstep {
@@ -110,6 +111,7 @@ int axis_along(const Point<dim>& gravity) {
 }
 
 /// Height of the still water: that of the one level among the fluid's liquids [m].
+template <int dim>
 double still_level(const ParameterList& fluid, const std::string& where) {
   const ParameterList& liquids = fluid.sublist("Free Surface").sublist("Liquid");
   std::optional<double> height;
@@ -118,7 +120,12 @@ double still_level(const ParameterList& fluid, const std::string& where) {
     const ParameterList& liquid = liquids.sublist(liquids.name(it));
     if (liquid.get<std::string>("Type") != "level")
       continue;
-    height = liquid.get<double>("Height");
+    const FieldFormula<dim> formula(liquid, "Height", "Fluid/Free Surface/Liquid");
+    check_input(formula.are_numbers(),
+                "In \"{}\", a \"Wave\" runs on still water, but the \"Height\" of \"{}\" in "
+                "\"Fluid/Free Surface/Liquid\" depends on the place; make it a number.",
+                where, liquids.name(it));
+    height = formula(0, Point<dim>::Zero(), 0);
     ++n_levels;
   }
   check_input(
@@ -170,7 +177,7 @@ std::optional<InflowWave<dim>> read_inflow_wave(const ParameterList& side,
   InflowWave<dim> wave;
   wave.height = list.get<double>("Height");
   wave.period = 1 / list.get<double>("Frequency");
-  wave.level = still_level(fluid, where);
+  wave.level = still_level<dim>(fluid, where);
   wave.gravity = gravity.norm();
   wave.up = -gravity.normalized();
   wave.inward = Point<dim>::Unit(axis) * (end == 0 ? 1 : -1);

@@ -1,4 +1,7 @@
 #pragma once
+#include <string>
+#include <vector>
+
 #include "base/types.hpp"
 #include "parameters/parameter_list.hpp"
 
@@ -7,6 +10,12 @@ namespace lockstep {
 template <typename T>
 ParameterArray<T> filled_array(int n, T value) {
   return ParameterArray<T>(n, value);
+}
+
+/// The variables of a formula of the place: x, y, z [m], in 2D x, y.
+template <int dim>
+std::vector<std::string> place() {
+  return dim == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"};
 }
 
 /// A vector of a validated list.
