@@ -278,7 +278,8 @@ void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
       "advection velocity from the middle of the step would damp them. Leave the order out.");
   for (int axis = 0; axis < dim; ++axis)
     check_input(
-        !periodic[axis] || gravity[axis] == 0,
+        !periodic[axis] ||
+            (gravity[axis] == 0 && FieldFormula<dim>(fluid, "Gravity", "Fluid").is_number(axis)),
         "With a \"Free Surface\", gravity may not act along the periodic axis {}: the liquid "
         "would fall for ever.",
         "xyz"[axis]);

@@ -69,6 +69,12 @@ const std::vector<FormerName>& former_names() {
        "place of \"keep\""},
       {"Liquid", "Amplitude", "stands in the \"Height\" now: \"[0.5 + 0.1*cos(3*x)]\""},
       {"Liquid", "Wavelength", "stands in the \"Height\" now: \"[0.5 + 0.1*cos(3*x)]\""},
+      {"Sides", "Profile",
+       "is gone: \"Velocity\" may be a formula of the place, a parabola \"[6*y*(1 - y)]\""},
+      {"Sides", "Ramp Time",
+       "is gone: \"Velocity\" may be a formula of the time, a ramp \"[min(t, 1)]\", and a \"Wave\" "
+       "has its own"},
+      {"Sides", "End", "is gone: \"Velocity\" may be a formula of the time, \"[t < 1 ? 2 : 0]\""},
       {"Wave", "Period", "is \"Frequency\" now, one over it"},
       {"Wave", "Depth", "is that of the domain now: leave it out"},
       {"Wave", "Level", "is the \"Height\" of the fluid's \"Liquid\" now: leave it out"},

@@ -138,10 +138,11 @@ def sides(world):
         if side["Type"] == "wall" and world.does_work(0.15):
             side["Velocity"] = world.vector(0.5 * world.speed)
             side["Velocity"][axis] = 0.0
-            if rng.random() < 0.3:
-                side["Ramp Time"] = rng.uniform(0, 2) * world.dt
+            ramp = f"min(max(t/{rng.uniform(0, 2) * world.dt}, 0), 1)" if rng.random() < 0.3 else "1"
             if rng.random() < 0.2:
-                side["End"] = world.start + rng.uniform(0, 4) * world.dt
+                ramp += f"*(t > {world.start + rng.uniform(0, 4) * world.dt} ? 0 : 1)"
+            if ramp != "1":
+                side["Velocity"] = [f"{v}*{ramp}" if v else "0" for v in side["Velocity"]]
         lists[name] = side
     world.facts.open_sides = any(side["Type"] in ("open", "inflow") for side in kinds.values())
     world.facts.periodic = any(side["Type"] == "periodic" for side in kinds.values())
@@ -153,10 +154,14 @@ def inflow(world, axis, end):
     velocity = [0.0] * world.dimension
     velocity[axis] = (1 if end == 0 else -1) * rng.uniform(0.2, 1) * world.speed
     side = {"Type": "inflow", "Velocity": velocity}
+    factors = []
     if rng.random() < 0.3:
-        side["Profile"] = "parabolic"
+        factors += [f"6*(({a}) - ({lower}))*(({upper}) - ({a}))/({(upper - lower) ** 2})"
+                    for a, lower, upper in zip(AXES, world.lower, world.upper) if AXES.index(a) != axis]
     if rng.random() < 0.3:
-        side["Ramp Time"] = rng.uniform(0, 3) * world.dt
+        factors.append(f"min(max(t/{rng.uniform(0, 3) * world.dt}, 0), 1)")
+    if factors:
+        side["Velocity"] = ["*".join([str(v), *factors]) if v else "0" for v in velocity]
     if rng.random() < 0.3:
         middle = [(a + b) / 2 for a, b in zip(world.lower, world.upper)]
         half = [rng.uniform(0.25, 0.45) * (b - a) for a, b in zip(world.lower, world.upper)]

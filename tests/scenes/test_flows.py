@@ -50,7 +50,7 @@ class Flows(unittest.TestCase):
 
     def smoke_downstream(self, start, ramp):
         """Smoke of a strip behind a disc, after two steps."""
-        inflow = {"Type": "inflow", "Velocity": (1., 0.), **({"Ramp Time": ramp} if ramp else {})}
+        inflow = {"Type": "inflow", "Velocity": (f"min(max(t/{ramp}, 0), 1)", "0") if ramp else (1., 0.)}
         return self.run_scene({
             "Domain": {"Lower": (0., 0.), "Upper": (2., 1.), "Cells": (32, 16),
                        "Sides": {"x lower": inflow, "x upper": {"Type": "open"}, **SLIPPERY}},

@@ -32,13 +32,6 @@ Scalar read_scalar(const MacDomain<dim>& domain, const ParameterList& list, cons
   scalar.unit = unit;
   scalar.ambient = list.get<double>("Ambient");
   scalar.values.assign(domain.grid.n_stored_cells(), scalar.ambient);
-  for (int axis = 0; axis < dim; ++axis) {
-    const auto& sides = domain.boundary.sides[axis];
-    if (name == "smoke")
-      scalar.inflow.push_back({sides[0].smoke, sides[1].smoke});
-    else
-      scalar.inflow.push_back({sides[0].temperature, sides[1].temperature});
-  }
   const std::string where = name == "smoke" ? "Fluid/Smoke" : "Fluid/Temperature";
   if (list.isParameter("Value")) {
     const FieldFormula<dim> value(list, "Value", where);

@@ -144,6 +144,8 @@ void MacFlow<dim>::load(const CheckpointReader& checkpoint) {
   time = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step = checkpoint.file().read_attribute<double>("fluid", "last_step");
   accepted_step = last_step;
+  parameters.forces.set_time(time - last_step / 2);
+  accepted_acceleration = parameters.forces.uniform();
   if (liquid)
     liquid->load(checkpoint);
   forget_speed();

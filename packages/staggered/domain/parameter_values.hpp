@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "parameters/parameter_list.hpp"
+#include "parameters/field_formula.hpp"
 
 namespace lockstep {
 
@@ -26,6 +26,12 @@ Point<dim> point_value(const ParameterList& list, const std::string& name) {
   for (int a = 0; a < dim; ++a)
     x[a] = values[a];
   return x;
+}
+
+/// Gravity of a validated list "Fluid" at t = 0 [m/s^2].
+template <int dim>
+Point<dim> gravity_at_start(const ParameterList& fluid) {
+  return FieldFormula<dim>(fluid, "Gravity", "Fluid").vector(Point<dim>::Zero(), 0);
 }
 
 }  // namespace lockstep
