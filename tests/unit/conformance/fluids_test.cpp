@@ -22,9 +22,7 @@ std::unique_ptr<MacFluid<dim>> moving_fluid(double viscosity, bool open) {
   scene.fluid.set("Density", 3.0);
   scene.fluid.set("Viscosity", viscosity);
   scene.fluid.set("Gravity", dim == 2 ? numbers({0.3, -2}) : numbers({0.3, 0, -2}));
-  ParameterList& start = scene.fluid.sublist("Initial State");
-  start.set("Type", "uniform");
-  start.set("Velocity", dim == 2 ? numbers({0.3, 0.2}) : numbers({0.3, 0.2, -0.1}));
+  scene.fluid.set("Velocity", dim == 2 ? numbers({0.3, 0.2}) : numbers({0.3, 0.2, -0.1}));
   if (open)
     scene.side(dim == 2 ? "y upper" : "z upper", "open");
   return scene.make();
