@@ -12,6 +12,7 @@ import gases
 import joints
 import liquids
 import long_tension
+import phases
 import resting
 import seams
 import solvers
@@ -353,7 +354,7 @@ def observers(world):
 def random_scene(seed):
     """The scene that this seed names, as a Scene."""
     world = World(seed)
-    at_seam, rests = seams.FIRST_SEED <= seed < resting.FIRST_SEED, seed >= resting.FIRST_SEED
+    at_seam, rests = seams.FIRST_SEED <= seed < resting.FIRST_SEED, resting.FIRST_SEED <= seed < phases.FIRST_SEED
     if at_seam:
         seams.fill_tiles(world)
     side_lists = sides(world)
@@ -372,6 +373,8 @@ def random_scene(seed):
         gases.trap_air(world, content, seed)
     elif rests:
         resting.lay_down(world, content, seed)
+    elif seed >= phases.FIRST_SEED:
+        phases.give_air_mass(world, content, seed)
     content["Coupling"] = coupling(world)
     content["Contact"] = contact(world, content["Solids"])
     if rests:
