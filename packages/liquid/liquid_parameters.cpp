@@ -186,11 +186,15 @@ void declare_phases(ParameterList& fluid) {
       "Two incompressible fluids, one below and one above the surface of \"Free Surface\", with "
       "pressure, momentum and solids in both. Absent: \"Density\" and \"Viscosity\" are those of "
       "the one fluid, and air above a free surface has no mass.");
-  for (const auto& [name, density] : {std::pair("Liquid", 1000.0), std::pair("Gas", 1.2)}) {
-    ParameterList& phase = declare_list(phases, name, "The fluid on this side of the surface.");
-    declare_positive(phase, "Density", density, "Density [kg/m^3] (2D: [kg/m^2]).");
-    declare_at_least(phase, "Viscosity", 0.0, 0.0, "Dynamic viscosity mu [Pa s].");
-  }
+  ParameterList& liquid = declare_optional_list(
+      phases, "Liquid",
+      "The fluid below the surface. Absent: it has the fluid's \"Density\" and \"Viscosity\".");
+  ParameterList& gas = declare_list(phases, "Gas", "The fluid above the surface.");
+  declare_positive(liquid, "Density", 1000.0, "Density [kg/m^3] (2D: [kg/m^2]).");
+  declare_positive(gas, "Density", 1.2,
+                   "Density [kg/m^3] (2D: [kg/m^2]), no more than the liquid's.");
+  for (ParameterList* phase : {&liquid, &gas})
+    declare_at_least(*phase, "Viscosity", 0.0, 0.0, "Dynamic viscosity mu [Pa s].");
   declare_choice(
       phases, "Interface Transport", "consistent", {"consistent", "plain"},
       "Of velocities within two cells of the surface. consistent: mass and momentum "
@@ -199,17 +203,15 @@ void declare_phases(ParameterList& fluid) {
 }
 
 Phases read_phases(const ParameterList& fluid) {
-  Phases phases;
-  if (!fluid.isSublist("Phases")) {
-    phases.liquid = {fluid.get<double>("Density"), fluid.get<double>("Viscosity")};
-    return phases;
-  }
-  const auto read = [&](const char* name) {
-    const ParameterList& phase = fluid.sublist("Phases").sublist(name);
+  const auto read = [](const ParameterList& phase) {
     return Phase{phase.get<double>("Density"), phase.get<double>("Viscosity")};
   };
-  phases = {read("Liquid"), read("Gas"),
-            fluid.sublist("Phases").get<std::string>("Interface Transport") == "consistent"};
+  if (!fluid.isSublist("Phases"))
+    return {read(fluid), {}};
+  const ParameterList& list = fluid.sublist("Phases");
+  const bool has_liquid = list.isSublist("Liquid");
+  const Phases phases{read(has_liquid ? list.sublist("Liquid") : fluid), read(list.sublist("Gas")),
+                      list.get<std::string>("Interface Transport") == "consistent"};
   check_input(fluid.isSublist("Free Surface"),
               "\"Fluid\" has \"Phases\", but nothing says where each of them is; add the list "
               "\"Free Surface\" with its \"Liquid\".");
@@ -219,9 +221,9 @@ Phases read_phases(const ParameterList& fluid) {
               "the place of the other in \"Free Surface\".",
               phases.gas->density, phases.liquid.density);
   for (const char* name : {"Density", "Viscosity"})
-    check_input(fluid.getEntry(name).isDefault(),
-                "\"Fluid\" has \"Phases\" and a \"{}\" of its own; leave that out, each phase "
-                "has one.",
+    check_input(!has_liquid || fluid.getEntry(name).isDefault(),
+                "\"Fluid\" has \"Phases\" with a \"Liquid\" and a \"{}\" of its own; leave one of "
+                "them out, each phase has one.",
                 name);
   check_input(!fluid.isSublist("Moving Tiles"),
               "\"Phases\" has a gas, but with \"Moving Tiles\" most of it would have no cells; "
