@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     std::vector<std::unique_ptr<SolidModel<2>>> models;
     models.push_back(std::make_unique<Piston>(Piston::Options{}, comm));
     Violations found = check_solid<2>(*models.front());
-    const SolidSystem<2> solids(std::move(models), comm);
+    SolidSystem<2> solids(std::move(models), comm);
     for (const Violations& more : {check_fluid<2>(fluid, solids.snapshot(), coupling),
                                    check_coupling<2>(coupling, fluid, solids)})
       found.insert(found.end(), more.begin(), more.end());

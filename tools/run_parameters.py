@@ -1,4 +1,5 @@
 """Contents of a run's used-parameters.xml: all parameters, and how its scene wants to be shown."""
+import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -30,9 +31,15 @@ def numbers(text):
     return [float(word) for word in text.strip(" {}").split(",")]
 
 
+def leading_number(formula):
+    """Of "-9.81*(1 + sin(t))" the -9.81; 0 if it begins with none."""
+    number = re.match(r"[\s(]*(-?[\d.]+(?:[eE][-+]?\d+)?)", formula)
+    return float(number[1]) if number else 0.
+
+
 def up_axis(values):
-    """Against gravity; y if there is none. `values`: of the parameters, by name."""
-    gravity = numbers(values.get("Fluid/Gravity", "{0, 0, 0}"))
+    """Against gravity, by the sizes with which its formulas begin; y if there is none. `values`: of the parameters, by name."""
+    gravity = [leading_number(part) for part in re.split(r",(?![^(]*\))", values.get("Fluid/Gravity", "{0, 0, 0}").strip(" {}"))]
     axis = max(range(len(gravity)), key=lambda i: abs(gravity[i]))
     return axis if gravity[axis] < 0 else 1
 

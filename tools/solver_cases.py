@@ -62,8 +62,7 @@ def row_of_balls(density):
 def pool(level, amplitude):
     """Lists for the list `Fluid`: water up to about that height, with a standing wave, and air above."""
     return ['<ParameterList name="Free Surface"><ParameterList name="Liquid"><ParameterList name="Pool">',
-            parameter("Type", "string", "level"), parameter("Height", "double", level), parameter("Amplitude", "double", amplitude),
-            parameter("Wavelength", "double", 2), "</ParameterList></ParameterList></ParameterList>"]
+            parameter("Type", "string", "level"), parameter("Height", "double", f"[{level} + {amplitude}*cos(_pi*x)]"), "</ParameterList></ParameterList></ParameterList>"]
 
 
 def scene_of(is_open, solids, cells, step=0.005, fluid=(), joints=()):

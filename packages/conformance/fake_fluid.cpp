@@ -89,6 +89,9 @@ const FluidGeometry<dim>& FakeFluid<dim>::freeze(const Surface& surface,
     if (face.kind == FaceKind::coupled && owned(face))
       frozen_.coupled_volumes.push_back(face.volume);
   }
+  frozen_.cut_cells.clear();
+  if (rule.cuts_cells())
+    find_cut_cells(*surface);
   find_regions();
   assemble_pressure_block();
   frozen_.volume = static_cast<double>(rank_of_unknown_.size()) * std::pow(box_.spacing, dim);
@@ -149,6 +152,7 @@ void FakeFluid<dim>::classify(Face& face, const SurfaceSnapshot<dim>& surface,
     if (cells[side] < 0)
       continue;
     pressure.unknown = unknown_[cells[side]];
+    pressure.cell = cells[side];
     pressure.solid = solid_[cells[side]];
     pressure.kind = pressure.solid >= 0 ? SideKind::solid : SideKind::unknown;
   }
@@ -175,6 +179,28 @@ void FakeFluid<dim>::classify(Face& face, const SurfaceSnapshot<dim>& surface,
   volume.open_fraction = rule.open_fraction(volume, occluded, surface);
   if (volume.open_fraction < 1)
     face.kind = FaceKind::coupled;
+}
+
+template <int dim>
+void FakeFluid<dim>::find_cut_cells(const SurfaceSnapshot<dim>& surface) {
+  for (int cell = 0; cell < static_cast<int>(unknown_.size()); ++cell) {
+    CutCell<dim> cut;
+    int rest = cell;
+    for (int a = 0; a < dim; ++a) {
+      const int place = rest % box_.n_cells[a];
+      rest /= box_.n_cells[a];
+      cut.box.min()[a] = box_.lower[a] + place * box_.spacing;
+      cut.box.max()[a] = box_.lower[a] + (place + 1) * box_.spacing;
+    }
+    if (unknown_[cell] == no_index || !surface.touches(cut.box))
+      continue;
+    cut.pressure.kind = SideKind::unknown;
+    cut.pressure.unknown = unknown_[cell];
+    cut.pressure.center = cut.box.center();
+    cut.pressure.cell = cell;
+    cut.is_owned = rank_of_unknown_[unknown_[cell]] == comm_->getRank();
+    frozen_.cut_cells.push_back(cut);
+  }
 }
 
 template <int dim>

@@ -87,6 +87,7 @@ class FakeFluid : public FluidDiscretization<dim>,
   int face_at(int axis, const Index<dim>& index) const;
   void number_cells(const SurfaceSnapshot<dim>& surface);
   void classify(Face& face, const SurfaceSnapshot<dim>& surface, const OpenFractionRule<dim>& rule);
+  void find_cut_cells(const SurfaceSnapshot<dim>& surface);
   void find_regions();
   void assemble_pressure_block();
   double mass(const Face& face) const;

@@ -33,7 +33,8 @@ FaceShares<dim> shares_at_patch(const ControlVolume<dim>& volume,
                                 const SurfaceSnapshot<dim>& surface) {
   FaceShares<dim> shares;
   const int solid = std::max(volume.sides[0].solid, volume.sides[1].solid);
-  shares.all.push_back({1, surface.closest_on_solid(volume.center, solid), solid, volume.center});
+  shares.all.push_back({1, surface.closest_on_solid(volume.center, solid), solid, volume.center,
+                        surface.solids()[solid].is_soft_body()});
   return shares;
 }
 }  // namespace
@@ -42,27 +43,37 @@ template <int dim>
 void FluxCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
                                  const SolidSystem<dim>& solids,
                                  const SurfaceSnapshot<dim>& surface) {
-  this->take_volumes(fluid, surface);
   shares_.clear();
-  const LiquidFluid<dim>* liquid = fluid.liquid();
-  for (std::size_t f = 0; f < volumes_.size(); ++f) {
-    const ControlVolume<dim>& volume = volumes_[f];
+  for (const ControlVolume<dim>& volume : fluid.coupled_volumes())
     shares_.push_back(volume.touches_patch() ? shares_at_patch<dim>(volume, surface)
                                              : face_shares<dim>(volume, surface, options_));
-    masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
-    if (volume.only_gas())
-      masses_[f] = 0;
-    if (liquid && masses_[f] > 0) {
-      const double wet = std::max(0.0, wet_volume<dim>(volume, surface, true, *liquid));
-      const double dry = std::max(0.0, volume.box.volume() - wet);
-      masses_[f] = shares_[f].thin_part * (volume.density * wet + liquid->gas_density() * dry);
-    }
-  }
+  flows_ = surface_flows<dim>(fluid, surface, shares_);
+  std::vector<RowPush> pushes;
+  for (const SurfaceFlow<dim>& flow : flows_)
+    pushes.push_back(
+        RowPush::into(flow.pressure, static_cast<int>(shares_.size() + pushes.size()), 1));
+  this->take_volumes(fluid, surface, pushes);
+  find_masses(fluid.liquid());
   find_prescribed_velocity(solids);
   if (options_.correct_buoyancy)
     this->find_hydrostatic_loads(fluid, solids, [this](auto& loads) { add_rest(loads); });
   if (solids.has_unknowns())
     assemble_blocks(solids);
+}
+
+template <int dim>
+void FluxCoupling<dim>::find_masses(const LiquidFluid<dim>* liquid) {
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    const ControlVolume<dim>& volume = volumes_[f];
+    masses_[f] = volume.density * volume.box.volume() * shares_[f].thin_part;
+    if (volume.only_gas())
+      masses_[f] = 0;
+    if (liquid && masses_[f] > 0) {
+      const double wet = std::max(0.0, wet_volume<dim>(volume, *surface_, true, *liquid));
+      const double dry = std::max(0.0, volume.box.volume() - wet);
+      masses_[f] = shares_[f].thin_part * (volume.density * wet + liquid->gas_density() * dry);
+    }
+  }
 }
 
 template <int dim>
@@ -77,25 +88,59 @@ void FluxCoupling<dim>::add_rest(HydrostaticLoads<dim>& loads) const {
 }
 
 template <int dim>
-void FluxCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
+bool FluxCoupling<dim>::moves_otherwise(std::size_t f) const {
+  const std::vector<FluxShare<dim>>& all = shares_[f].all;
+  return !shares_[f].of_thin.empty() ||
+         std::any_of(all.begin(), all.end(), [](const auto& share) { return share.at_surface; });
+}
+
+template <int dim>
+void FluxCoupling<dim>::add_share(const FluxShare<dim>& share, int direction,
+                                  const SolidSystem<dim>& solids, RowEntries& row) const {
   VelocityRow<dim> scratch;
   std::vector<GlobalIndex> dofs;
   std::vector<double> values;
-  weights_ = weights_of_rows(static_cast<int>(volumes_.size()), [&](int f, RowEntries& row) {
-    for (const FluxShare<dim>& share : shares_[f].all) {
-      directed_row<dim>(solids, share.point, share.center, volumes_[f].direction, scratch, dofs,
-                        values);
-      for (std::size_t k = 0; k < dofs.size(); ++k)
-        row.emplace_back(dofs[k], share.weight * values[k]);
-    }
+  directed_row<dim>(solids, share.point, share.center, direction, scratch, dofs, values);
+  for (std::size_t k = 0; k < dofs.size(); ++k)
+    row.emplace_back(dofs[k], share.weight * values[k]);
+}
+
+template <int dim>
+void FluxCoupling<dim>::add_flow(const SurfaceFlow<dim>& flow, const SolidSystem<dim>& solids,
+                                 RowEntries& row) const {
+  VelocityRow<dim> of_point;
+  solids.velocity_row(flow.point, flow.point.position, of_point);
+  for (std::size_t k = 0; k < of_point.dofs.size(); ++k)
+    if (const double value = flow.area.dot(of_point.coefficients[k]); value != 0)
+      row.emplace_back(of_point.dofs[k], value);
+}
+
+template <int dim>
+void FluxCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
+  const int n_faces = static_cast<int>(volumes_.size());
+  const int n_rows = n_faces + static_cast<int>(flows_.size());
+  weights_ = weights_of_rows(n_rows, [&](int i, RowEntries& row) {
+    if (i >= n_faces)
+      return add_flow(flows_[i - n_faces], solids, row);
+    for (const FluxShare<dim>& share : shares_[i].all)
+      if (!share.at_surface)
+        add_share(share, volumes_[i].direction, solids, row);
   });
   this->assemble_coupling(solids);
 
+  VelocityRow<dim> scratch;
+  face_weights_ = weights_of_rows(n_faces, [&](int f, RowEntries& row) {
+    const int direction = volumes_[f].direction;
+    if (!shares_[f].of_thin.empty())
+      add_carried_row<dim>(solids, shares_[f].of_thin, volumes_[f].center, direction, scratch, row);
+    else if (moves_otherwise(f))
+      for (const FluxShare<dim>& share : shares_[f].all)
+        add_share(share, direction, solids, row);
+  });
+  face_solid_import_ = import_of(face_weights_.dofs, solids.map());
   std::vector<std::vector<SurfaceShare<dim>>> thin;
   for (const FaceShares<dim>& shares : shares_)
     thin.push_back(shares.of_thin);
-  thin_weights_ = coupling_weights<dim>(volumes_, thin, solids);
-  thin_solid_import_ = import_of(thin_weights_.dofs, solids.map());
   const bool lumps = std::any_of(masses_.begin(), masses_.end(), [](double m) { return m > 0; });
   if (max_all(solids.comm(), lumps ? 1. : 0.) > 0)
     added_mass_ = assemble_triplets(
@@ -105,7 +150,6 @@ void FluxCoupling<dim>::assemble_blocks(const SolidSystem<dim>& solids) {
 
 template <int dim>
 void FluxCoupling<dim>::find_prescribed_velocity(const SolidSystem<dim>& solids) {
-  prescribed_velocity_.assign(volumes_.size(), 0);
   prescribed_thin_velocity_.assign(volumes_.size(), 0);
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     const auto velocity = [&](const SurfacePoint<dim>& point, const Point<dim>& x) {
@@ -143,21 +187,25 @@ void FluxCoupling<dim>::add_lumped_momentum(const std::vector<double>& coupled_v
   std::vector<double> momentum(volumes_.size());
   for (std::size_t f = 0; f < volumes_.size(); ++f)
     momentum[f] = masses_[f] * coupled_velocity[f];
-  add_transposed(thin_weights_, *thin_solid_import_, momentum, rhs);
+  add_transposed(face_weights_, *face_solid_import_, momentum, rhs);
 }
 
 /// Fluid lumped on thin parts moves with them alone, so that its momentum is what the solve
 /// balanced.
 template <int dim>
 std::vector<double> FluxCoupling<dim>::velocity(const Vector& solid_velocity) const {
-  std::vector<double> result = prescribed_velocity_, of_thin = prescribed_thin_velocity_;
+  std::vector<double> result = prescribed_velocity_, of_faces(volumes_.size(), 0);
   if (!coupling_transposed_.is_null()) {
     add_product(weights_, *solid_import_, solid_velocity, result);
-    add_product(thin_weights_, *thin_solid_import_, solid_velocity, of_thin);
+    add_product(face_weights_, *face_solid_import_, solid_velocity, of_faces);
   }
-  for (std::size_t f = 0; f < volumes_.size(); ++f)
+  result.resize(volumes_.size());
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
     if (!shares_[f].of_thin.empty())
-      result[f] = of_thin[f];
+      result[f] = of_faces[f] + prescribed_thin_velocity_[f];
+    else if (moves_otherwise(f))
+      result[f] = of_faces[f] + prescribed_velocity_[f];
+  }
   return result;
 }
 
@@ -169,6 +217,19 @@ std::vector<double> FluxCoupling<dim>::effective_velocity(const SolidSystem<dim>
       result[f] += share.weight *
                    solids.effective_velocity(share.point, share.center)[volumes_[f].direction];
   return result;
+}
+
+template <int dim>
+std::vector<double> FluxCoupling<dim>::effective_rows(const SolidSystem<dim>& solids) const {
+  std::vector<double> rows(volumes_.size(), 0);
+  for (std::size_t f = 0; f < volumes_.size(); ++f)
+    for (const FluxShare<dim>& share : shares_[f].all)
+      if (!share.at_surface)
+        rows[f] += share.weight *
+                   solids.effective_velocity(share.point, share.center)[volumes_[f].direction];
+  for (const SurfaceFlow<dim>& flow : flows_)
+    rows.push_back(flow.area.dot(solids.effective_velocity(flow.point, flow.point.position)));
+  return rows;
 }
 
 template <int dim>

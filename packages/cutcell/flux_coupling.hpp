@@ -1,16 +1,17 @@
 #pragma once
 #include <vector>
 
-#include "cutcell/flux_shares.hpp"
+#include "cutcell/surface_flows.hpp"
 #include "faces/face_coupling.hpp"
 
 namespace lockstep {
 
 /// Coupling by the flux of the surface through cut cells (face fractions of Ng, Min and Gibou
 /// 2009): faces keep the open part of their area and of their fluid's mass, the closed part moves
-/// with the solid. B_cj is what dof j pushes out of cell c. Closed solids lump no fluid, so that
-/// C = M_S - dt D; only the normal velocity is tied. Thin shells, and walls thinner than a cell,
-/// close faces and lump the fluid as mixed faces do.
+/// with the solid. B_cj is what dof j pushes into cell c: int_(surface in c) N_j n dA, of rigid
+/// bodies by the closed faces of the cell, which is the same, of soft ones by the surface. Closed
+/// solids lump no fluid, so that C = M_S - dt D; only the normal velocity is tied. Thin shells, and
+/// walls thinner than a cell, close faces and lump the fluid as mixed faces do.
 template <int dim>
 class FluxCoupling : public FaceCoupling<dim> {
  public:
@@ -45,9 +46,18 @@ class FluxCoupling : public FaceCoupling<dim> {
   double closed_area(const ControlVolume<dim>& volume) const override {
     return (1 - volume.open_fraction) * volume.area;
   }
+  void find_masses(const LiquidFluid<dim>* liquid);
   void find_prescribed_velocity(const SolidSystem<dim>& solids);
+  std::vector<double> effective_rows(const SolidSystem<dim>& solids) const override;
+  /// True if the face moves otherwise than its row of W says: with its thin parts alone, or
+  /// with soft bodies, whose surface pushes elsewhere.
+  bool moves_otherwise(std::size_t f) const;
   void add_rest(HydrostaticLoads<dim>& loads) const;
   void assemble_blocks(const SolidSystem<dim>& solids);
+  void add_share(const FluxShare<dim>& share, int direction, const SolidSystem<dim>& solids,
+                 RowEntries& row) const;
+  void add_flow(const SurfaceFlow<dim>& flow, const SolidSystem<dim>& solids,
+                RowEntries& row) const;
   void add_thin_impulses(std::size_t f, double velocity_before,
                          std::vector<Momentum<dim>>& impulses) const;
   void add_to_row(const std::vector<FluxShare<dim>>& shares, int direction,
@@ -65,9 +75,10 @@ class FluxCoupling : public FaceCoupling<dim> {
 
   FluxOptions options_;
   std::vector<FaceShares<dim>> shares_;
-  CouplingWeights thin_weights_;  ///< weights of thin parts; `weights_` are of all shares
+  std::vector<SurfaceFlow<dim>> flows_;  ///< their rows of W are behind those of the faces
+  CouplingWeights face_weights_;         ///< weights of the velocity of faces that move otherwise
   std::vector<double> prescribed_thin_velocity_;  ///< velocity of prescribed thin parts
-  RCP<Import> thin_solid_import_;                 ///< solid map -> `thin_weights_.dofs`
+  RCP<Import> face_solid_import_;                 ///< solid map -> `face_weights_.dofs`
 };
 
 }  // namespace lockstep

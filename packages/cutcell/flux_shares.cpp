@@ -20,23 +20,25 @@ SurfacePoint<dim> representative(const SurfaceSnapshot<dim>& surface, int solid,
   return point;
 }
 
-/// Deformable solids: the surface points of this solid in and around the dual cell.
+/// Soft bodies: the points of their surface in and around the dual cell move the face.
 template <int dim>
-void add_deformable_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
-                           const ClosedPart<dim>& part, double weight,
-                           std::vector<FluxShare<dim>>& shares) {
+void add_soft_shares(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface,
+                     const ClosedPart<dim>& part, double weight,
+                     std::vector<FluxShare<dim>>& shares) {
+  const bool at_surface = surface.solids()[part.solid].is_soft_body();
   const std::vector<SurfaceShare<dim>> around = surface_shares<dim>({volume}, surface).front();
   double total = 0;
   for (const SurfaceShare<dim>& share : around)
     total += share.solid == part.solid ? share.weight : 0;
   if (total == 0) {
-    shares.push_back(
-        {weight, surface.closest_on_solid(part.center, part.solid), part.solid, part.center});
+    shares.push_back({weight, surface.closest_on_solid(part.center, part.solid), part.solid,
+                      part.center, at_surface});
     return;
   }
   for (const SurfaceShare<dim>& share : around)
     if (share.solid == part.solid)
-      shares.push_back({weight * share.weight / total, share.point, part.solid, part.center});
+      shares.push_back(
+          {weight * share.weight / total, share.point, part.solid, part.center, at_surface});
 }
 
 /// Moves the shares so that their mean is the centre of the face.
@@ -193,7 +195,7 @@ FaceShares<dim> face_shares(const ControlVolume<dim>& volume, const SurfaceSnaps
       result.all.push_back(
           {weight, representative<dim>(surface, part.solid, part.center), part.solid, part.center});
     else
-      add_deformable_shares<dim>(volume, surface, part, weight, result.all);
+      add_soft_shares<dim>(volume, surface, part, weight, result.all);
   }
   if (is_closed)
     center_on_face<dim>(volume, result.all);

@@ -11,13 +11,15 @@ namespace lockstep {
 /// moves its share with the velocity of its rigid motion at `center`, the centroid of its part of
 /// the face: as a rigid motion is free of divergence, what flows through the closed faces of a cell
 /// is then exactly what the surface inside the cell pushes out (docs/method.md, "The flux through
-/// cut cells").
+/// cut cells"). A soft body's share says how much it closes, and how fast the face moves; what it
+/// pushes is that of its surface in the cells (cutcell/surface_flows.hpp).
 template <int dim>
 struct FluxShare {
   double weight = 0;
   SurfacePoint<dim> point;  ///< names the solid, and carries the weights of its vertices
   int solid = -1;
   Point<dim> center = Point<dim>::Zero();  ///< [m]
+  bool at_surface = false;                 ///< the surface in the cells pushes, not the face
 };
 
 /// Measure of a face's closed part.

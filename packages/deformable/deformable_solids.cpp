@@ -174,11 +174,24 @@ template <int dim>
 void DeformableSolids<dim>::update() {
   implicit_.update();
   explicit_.update_largest_stable_step();
+  find_load();
+  states_ = body_states(nodes_, surface_, forces_.energy);
+}
+
+template <int dim>
+void DeformableSolids<dim>::set_gravity(const Point<dim>& gravity) {
+  if (gravity == nodes_.gravity)
+    return;
+  nodes_.gravity = gravity;
+  find_load();
+}
+
+template <int dim>
+void DeformableSolids<dim>::find_load() {
   Momentum<dim> load;
   for (int i = 0; i < nodes_.n_owned(); ++i)
     load.add(nodes_.x[i], nodes_.mass[i] * nodes_.gravity + nodes_.load[i]);
   load_ = sum_over_ranks<dim>(load, nodes_.comm);
-  states_ = body_states(nodes_, surface_, forces_.energy);
 }
 
 template <int dim>

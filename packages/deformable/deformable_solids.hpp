@@ -54,6 +54,7 @@ class DeformableSolids : public SolidModel<dim>,
   void add_midpoint_correction(double dt, Vector& momentum) const override {
     implicit_.add_midpoint_correction(dt, momentum);
   }
+  void set_gravity(const Point<dim>& gravity) override;
   void begin_step(double time, double dt) override;
   std::vector<GlobalIndex> locked_dofs() const override;
   std::vector<double> locked_velocities(double begin, double end) const override {
@@ -93,6 +94,7 @@ class DeformableSolids : public SolidModel<dim>,
 
  private:
   using Nodes = std::vector<Point<dim>>;
+  void find_load();
   void update();  ///< updates forces, their bounds and states after the positions have changed
 
   std::string type_;

@@ -15,26 +15,34 @@ namespace lockstep {
 
 template <int dim>
 void FaceCoupling<dim>::take_volumes(const FluidDiscretization<dim>& fluid,
-                                     const SurfaceSnapshot<dim>& surface) {
+                                     const SurfaceSnapshot<dim>& surface,
+                                     const std::vector<RowPush>& further) {
   surface_ = &surface;
   volumes_ = fluid.coupled_volumes();
   patches_ = fluid.contact_patches();
   masses_.assign(volumes_.size(), 0);
-  prescribed_velocity_.assign(volumes_.size(), 0);
+  prescribed_velocity_.assign(volumes_.size() + further.size(), 0);
   coupling_transposed_ = Teuchos::null;
   added_mass_ = Teuchos::null;
   closed_area_.clear();
   loads_at_rest_.clear();
   load_corrections_.clear();
   displaced_masses_.clear();
-  std::vector<GlobalIndex> unknowns;
-  for (const ControlVolume<dim>& volume : volumes_) {
-    closed_area_.push_back(closed_area(volume));
-    for (const auto& side : volume.sides) {
-      if (side.unknown != no_index)
-        unknowns.push_back(side.unknown);
+  pushes_.clear();
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    closed_area_.push_back(closed_area(volumes_[f]));
+    for (int side = 0; side < 2; ++side) {
+      const RowPush one =
+          RowPush::into(volumes_[f].sides[side], static_cast<int>(f), push(f, side));
+      if (one.has_receiver())
+        pushes_.push_back(one);
     }
   }
+  pushes_.insert(pushes_.end(), further.begin(), further.end());
+  std::vector<GlobalIndex> unknowns;
+  for (const RowPush& one : pushes_)
+    if (one.unknown != no_index)
+      unknowns.push_back(one.unknown);
   pressure_import_ = import_of(std::move(unknowns), fluid.pressure_map());
 }
 
@@ -44,18 +52,15 @@ void FaceCoupling<dim>::assemble_coupling(const SolidSystem<dim>& solids) {
   std::vector<Triplet> coupling;
   std::vector<GlobalIndex> dofs_at_patches;
   std::vector<double> rows_of_patches;  // a node and a value for each of these dofs
-  for (std::size_t f = 0; f < volumes_.size(); ++f) {
-    for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k) {
+  for (const RowPush& one : pushes_) {
+    for (int k = weights_.row_begin[one.row]; k < weights_.row_begin[one.row + 1]; ++k) {
       const GlobalIndex dof = weights_.dofs[weights_.columns[k]];
-      for (int side = 0; side < 2; ++side) {
-        const GlobalIndex unknown = volumes_[f].sides[side].unknown;
-        const double value = push(f, side) * weights_.values[k];
-        if (unknown != no_index)
-          coupling.push_back({dof, unknown, value});
-        if (const int node = volumes_[f].sides[side].patch; node >= 0) {
-          dofs_at_patches.push_back(dof);
-          rows_of_patches.insert(rows_of_patches.end(), {static_cast<double>(node), value});
-        }
+      const double value = one.area * weights_.values[k];
+      if (one.unknown != no_index)
+        coupling.push_back({dof, one.unknown, value});
+      if (one.patch >= 0) {
+        dofs_at_patches.push_back(dof);
+        rows_of_patches.insert(rows_of_patches.end(), {static_cast<double>(one.patch), value});
       }
     }
   }
@@ -85,19 +90,15 @@ void FaceCoupling<dim>::add_drained_rows(const std::vector<GlobalIndex>& dofs,
 }
 
 template <int dim>
-void FaceCoupling<dim>::add_divergence(const std::vector<double>& coupled_velocity,
-                                       Vector& rhs) const {
+void FaceCoupling<dim>::add_pushed(const std::vector<double>& row_velocity, Vector& rhs) const {
   Vector overlap(pressure_import_->getTargetMap());
   std::vector<double> at_nodes(patches_ ? patches_->n_nodes() : 0, 0);
-  for (std::size_t f = 0; f < volumes_.size(); ++f) {
-    for (int side = 0; side < 2; ++side) {
-      const double flux = push(f, side) * coupled_velocity[f];
-      const GlobalIndex unknown = volumes_[f].sides[side].unknown;
-      if (unknown != no_index)
-        overlap.sumIntoGlobalValue(unknown, flux);
-      if (const int node = volumes_[f].sides[side].patch; node >= 0)
-        at_nodes[node] += flux;
-    }
+  for (const RowPush& one : pushes_) {
+    const double flux = one.area * row_velocity[one.row];
+    if (one.unknown != no_index)
+      overlap.sumIntoGlobalValue(one.unknown, flux);
+    if (one.patch >= 0)
+      at_nodes[one.patch] += flux;
   }
   add_overlap(overlap, *pressure_import_, rhs);
   if (patches_)
@@ -106,7 +107,13 @@ void FaceCoupling<dim>::add_divergence(const std::vector<double>& coupled_veloci
 
 template <int dim>
 void FaceCoupling<dim>::add_prescribed_divergence(Vector& rhs) const {
-  add_divergence(prescribed_velocity_, rhs);
+  add_pushed(prescribed_velocity_, rhs);
+}
+
+template <int dim>
+void FaceCoupling<dim>::add_effective_divergence(const SolidSystem<dim>& solids,
+                                                 Vector& rhs) const {
+  add_pushed(effective_rows(solids), rhs);
 }
 
 template <int dim>
@@ -117,15 +124,12 @@ std::vector<double> FaceCoupling<dim>::pushes(const Vector& scaled_pressure,
   const auto pressure = beside.getData();
   const std::vector<double> at_nodes =
       patches_ ? patches_->extended(scaled_pressure) : std::vector<double>();
-  std::vector<double> result(volumes_.size(), 0);
-  for (std::size_t f = 0; f < volumes_.size(); ++f) {
-    for (int side = 0; side < 2; ++side) {
-      const GlobalIndex unknown = volumes_[f].sides[side].unknown;
-      if (unknown != no_index)
-        result[f] += push(f, side) * pressure[beside.getMap()->getLocalElement(unknown)];
-      if (const int node = volumes_[f].sides[side].patch; node >= 0)
-        result[f] += push(f, side) * at_nodes[node];
-    }
+  std::vector<double> result(prescribed_velocity_.size(), 0);
+  for (const RowPush& one : pushes_) {
+    if (one.unknown != no_index)
+      result[one.row] += one.area * pressure[beside.getMap()->getLocalElement(one.unknown)];
+    if (one.patch >= 0)
+      result[one.row] += one.area * at_nodes[one.patch];
   }
   add_pushes_of_gas(gas_pressure, result);
   return result;
@@ -136,10 +140,9 @@ void FaceCoupling<dim>::add_pushes_of_gas(const std::vector<double>& scaled_pres
                                           std::vector<double>& result) const {
   if (scaled_pressure.empty())
     return;
-  for (std::size_t f = 0; f < volumes_.size(); ++f)
-    for (int side = 0; side < 2; ++side)
-      if (const int bubble = volumes_[f].sides[side].bubble; bubble >= 0)
-        result[f] += push(f, side) * scaled_pressure[bubble];
+  for (const RowPush& one : pushes_)
+    if (one.bubble >= 0)
+      result[one.row] += one.area * scaled_pressure[one.bubble];
 }
 
 template <int dim>
@@ -147,7 +150,7 @@ void FaceCoupling<dim>::add_gas_push(const std::vector<double>& scaled_pressure,
                                      Vector& momentum) const {
   if (coupling_transposed_.is_null())
     return;
-  std::vector<double> given(volumes_.size(), 0);
+  std::vector<double> given(weights_.n_rows(), 0);
   add_pushes_of_gas(scaled_pressure, given);
   for (double& value : given)
     value = -value;
@@ -157,38 +160,43 @@ void FaceCoupling<dim>::add_gas_push(const std::vector<double>& scaled_pressure,
 template <int dim>
 std::vector<double> FaceCoupling<dim>::gas_push_size(int n_bubbles) const {
   std::vector<double> size(n_bubbles, 0);
-  for (int f = 0; f < weights_.n_rows(); ++f) {
+  for (const RowPush& one : pushes_) {
+    if (one.bubble < 0 || coupling_transposed_.is_null())
+      continue;
     double weight = 0;
-    for (int k = weights_.row_begin[f]; k < weights_.row_begin[f + 1]; ++k)
+    for (int k = weights_.row_begin[one.row]; k < weights_.row_begin[one.row + 1]; ++k)
       weight += std::abs(weights_.values[k]);
-    for (int side = 0; side < 2; ++side)
-      if (const int bubble = volumes_[f].sides[side].bubble; bubble >= 0)
-        size[bubble] += std::abs(push(f, side)) * weight;
+    size[one.bubble] += std::abs(one.area) * weight;
   }
   sum_all(pressure_import_->getSourceMap()->getComm(), size.data(), n_bubbles);
   return size;
 }
 
 template <int dim>
-std::vector<double> FaceCoupling<dim>::gas_rates(const std::vector<double>& coupled_velocity,
-                                                 int n_bubbles) const {
+std::vector<double> FaceCoupling<dim>::gas_rates_of_rows(const std::vector<double>& row_velocity,
+                                                         int n_bubbles) const {
   std::vector<double> rates(n_bubbles, 0);
-  for (std::size_t f = 0; f < volumes_.size(); ++f)
-    for (int side = 0; side < 2; ++side)
-      if (const int bubble = volumes_[f].sides[side].bubble; bubble >= 0)
-        rates[bubble] -= push(f, side) * coupled_velocity[f];
+  for (const RowPush& one : pushes_)
+    if (one.bubble >= 0)
+      rates[one.bubble] -= one.area * row_velocity[one.row];
   sum_all(pressure_import_->getSourceMap()->getComm(), rates.data(), n_bubbles);
   return rates;
 }
 
 template <int dim>
-std::vector<double> FaceCoupling<dim>::closed_velocity(const Vector& solid_velocity,
-                                                       bool with_prescribed) const {
-  std::vector<double> result =
-      with_prescribed ? prescribed_velocity_ : std::vector<double>(volumes_.size(), 0);
+std::vector<double> FaceCoupling<dim>::gas_rates(const Vector& solid_velocity, bool with_prescribed,
+                                                 int n_bubbles) const {
+  std::vector<double> rows =
+      with_prescribed ? prescribed_velocity_ : std::vector<double>(prescribed_velocity_.size(), 0);
   if (!coupling_transposed_.is_null())
-    add_product(weights_, *solid_import_, solid_velocity, result);
-  return result;
+    add_product(weights_, *solid_import_, solid_velocity, rows);
+  return gas_rates_of_rows(rows, n_bubbles);
+}
+
+template <int dim>
+std::vector<double> FaceCoupling<dim>::effective_gas_rates(const SolidSystem<dim>& solids,
+                                                           int n_bubbles) const {
+  return gas_rates_of_rows(effective_rows(solids), n_bubbles);
 }
 
 template <int dim>

@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "base/errors.hpp"
 #include "linear/vector_sums.hpp"
 
 namespace lockstep {
@@ -107,6 +108,16 @@ void Lines<dim>::explicit_momentum(double, double dt, Vector& momentum) const {
       std::copy_n(impulse.data(), dim, values.begin() + row_of_end(line, end, dim));
     }
   }
+}
+
+template <int dim>
+void Lines<dim>::set_gravity(const Point<dim>& gravity) {
+  check_input(
+      type_ != "mooring line" || !gravity_ || *gravity_ == gravity,
+      "The mooring line \"{}\" hangs under its weight, which \"Fluid/Gravity\" changes; make "
+      "gravity numbers, or the line a \"spring\".",
+      lines_.front().name);
+  gravity_ = gravity;
 }
 
 template <int dim>

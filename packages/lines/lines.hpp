@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ class Lines : public SolidModel<dim>,
   RCP<const LinearOperator> mass() const override { return mass_; }
   RCP<const LinearOperator> implicit_force(double dt) const override;
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
+  void set_gravity(const Point<dim>& gravity) override;
   void begin_step(double time, double dt) override;
   std::vector<GlobalIndex> locked_dofs() const override;
   std::vector<NodeAttachment<dim>> attachments() const override;
@@ -101,8 +103,9 @@ class Lines : public SolidModel<dim>,
   Work work_{*this};
   std::string type_;
   std::vector<Line<dim>> lines_;
-  std::vector<Ends> before_;    ///< places before the last `move`
-  std::vector<Ends> velocity_;  ///< velocities of the ends [m/s]
+  std::vector<Ends> before_;           ///< places before the last `move`
+  std::vector<Ends> velocity_;         ///< velocities of the ends [m/s]
+  std::optional<Point<dim>> gravity_;  ///< none before the first step [m/s^2]
   Communicator comm_;
   std::vector<SolidDescription> solids_;
   SurfaceMesh<dim> surface_;  ///< none

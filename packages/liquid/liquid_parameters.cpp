@@ -8,6 +8,7 @@
 #include "geometry/surface_check.hpp"
 #include "geometry/surface_snapshot.hpp"
 #include "liquid/watch/watch.hpp"
+#include "parameters/field_formula.hpp"
 #include "staggered/domain/parameter_values.hpp"
 #include "staggered/domain/region_shape.hpp"
 
@@ -16,25 +17,29 @@ namespace lockstep {
 namespace {
 constexpr double very_far = 1e9;  ///< [m], from the liquid of a tank that is empty
 
-/// A level with waves a cos(k x) along the first axis across gravity.
+/// Below a height, which may depend on the place; then the distance is that to the first order.
 template <int dim>
 SignedDistance<dim> level(const std::string& name, const ParameterList& list,
                           const Point<dim>& gravity) {
   check_input(
       gravity.norm() > 0,
-      "In \"Liquid\", \"{}\" is a level, but \"Gravity\" is 0, so that nothing says where up "
+      "In \"Free Surface\", \"{}\" is a level, but \"Gravity\" is 0, so that nothing says where up "
       "is; give a box, or gravity.",
       name);
   const Point<dim> up = -gravity.normalized();
-  const double height = list.get<double>("Height"), amplitude = list.get<double>("Amplitude");
-  const double k = 2 * M_PI / list.get<double>("Wavelength");
-  int along = 0;
-  while (std::abs(up[along]) > 0.9)
-    ++along;
-  return [=](const Point<dim>& x) {
-    const double phase = k * x[along];
-    const double slope = amplitude * k * std::sin(phase);
-    return (x.dot(up) - height - amplitude * std::cos(phase)) / std::sqrt(1 + slope * slope);
+  const FieldFormula<dim> height(list, "Height", "Fluid/Free Surface/" + name);
+  return [up, height](const Point<dim>& x) {
+    const double above = x.dot(up) - height(0, x, 0);
+    if (height.is_number(0))
+      return above;
+    const double step = 6e-6 * (1 + x.norm());  // at which a central difference errs least
+    Point<dim> slope = up;
+    for (int a = 0; a < dim; ++a) {
+      const Point<dim> shift = step * Point<dim>::Unit(a);
+      slope[a] -= (height(0, x + shift, 0) - height(0, x - shift, 0)) / (2 * step);
+    }
+    const double length = slope.norm();
+    return length > 0 ? above / length : above;
   };
 }
 
@@ -45,7 +50,7 @@ SignedDistance<dim> box(const std::string& name, const ParameterList& list) {
   shape.upper = point_value<dim>(list, "Upper");
   check_input(
       (shape.upper - shape.lower).minCoeff() > 0,
-      "In \"Liquid\", the box \"{}\" is empty: \"Upper\" must be above \"Lower\" along every "
+      "In \"Free Surface\", the box \"{}\" is empty: \"Upper\" must be above \"Lower\" along every "
       "axis.",
       name);
   return [shape](const Point<dim>& x) { return shape.distance(x); };
@@ -83,10 +88,10 @@ SignedDistance<dim> mesh(const std::string& name, const ParameterList& list) {
 template <int dim>
 std::vector<TypedSchema> liquid_schemas() {
   ParameterList level, box, ball, mesh;
-  declare(level, "Height", 0.0, "Of the surface, measured against gravity from the origin [m].");
-  declare_at_least(level, "Amplitude", 0.0, 0.0,
-                   "Of waves on it [m], with a crest at 0 along the first axis across gravity.");
-  declare_positive(level, "Wavelength", 1.0, "Of these waves [m].");
+  declare(level, "Height", 0.0,
+          "Of the surface, measured against gravity from the origin [m]; with waves a formula of "
+          "the place [m], such as \"[0.5 + 0.1*cos(3*x)]\".");
+  set_variables(level, "Height", place<dim>());
   declare_vector(box, "Lower", filled_array(dim, 0.0), dim, "Lower corner [m].");
   declare_vector(box, "Upper", filled_array(dim, 1.0), dim, "Upper corner [m].");
   declare_vector(ball, "Center", filled_array(dim, 0.0), dim, "Centre [m].");
@@ -181,11 +186,15 @@ void declare_phases(ParameterList& fluid) {
       "Two incompressible fluids, one below and one above the surface of \"Free Surface\", with "
       "pressure, momentum and solids in both. Absent: \"Density\" and \"Viscosity\" are those of "
       "the one fluid, and air above a free surface has no mass.");
-  for (const auto& [name, density] : {std::pair("Liquid", 1000.0), std::pair("Gas", 1.2)}) {
-    ParameterList& phase = declare_list(phases, name, "The fluid on this side of the surface.");
-    declare_positive(phase, "Density", density, "Density [kg/m^3] (2D: [kg/m^2]).");
-    declare_at_least(phase, "Viscosity", 0.0, 0.0, "Dynamic viscosity mu [Pa s].");
-  }
+  ParameterList& liquid = declare_optional_list(
+      phases, "Liquid",
+      "The fluid below the surface. Absent: it has the fluid's \"Density\" and \"Viscosity\".");
+  ParameterList& gas = declare_list(phases, "Gas", "The fluid above the surface.");
+  declare_positive(liquid, "Density", 1000.0, "Density [kg/m^3] (2D: [kg/m^2]).");
+  declare_positive(gas, "Density", 1.2,
+                   "Density [kg/m^3] (2D: [kg/m^2]), no more than the liquid's.");
+  for (ParameterList* phase : {&liquid, &gas})
+    declare_at_least(*phase, "Viscosity", 0.0, 0.0, "Dynamic viscosity mu [Pa s].");
   declare_choice(
       phases, "Interface Transport", "consistent", {"consistent", "plain"},
       "Of velocities within two cells of the surface. consistent: mass and momentum "
@@ -194,17 +203,15 @@ void declare_phases(ParameterList& fluid) {
 }
 
 Phases read_phases(const ParameterList& fluid) {
-  Phases phases;
-  if (!fluid.isSublist("Phases")) {
-    phases.liquid = {fluid.get<double>("Density"), fluid.get<double>("Viscosity")};
-    return phases;
-  }
-  const auto read = [&](const char* name) {
-    const ParameterList& phase = fluid.sublist("Phases").sublist(name);
+  const auto read = [](const ParameterList& phase) {
     return Phase{phase.get<double>("Density"), phase.get<double>("Viscosity")};
   };
-  phases = {read("Liquid"), read("Gas"),
-            fluid.sublist("Phases").get<std::string>("Interface Transport") == "consistent"};
+  if (!fluid.isSublist("Phases"))
+    return {read(fluid), {}};
+  const ParameterList& list = fluid.sublist("Phases");
+  const bool has_liquid = list.isSublist("Liquid");
+  const Phases phases{read(has_liquid ? list.sublist("Liquid") : fluid), read(list.sublist("Gas")),
+                      list.get<std::string>("Interface Transport") == "consistent"};
   check_input(fluid.isSublist("Free Surface"),
               "\"Fluid\" has \"Phases\", but nothing says where each of them is; add the list "
               "\"Free Surface\" with its \"Liquid\".");
@@ -214,9 +221,9 @@ Phases read_phases(const ParameterList& fluid) {
               "the place of the other in \"Free Surface\".",
               phases.gas->density, phases.liquid.density);
   for (const char* name : {"Density", "Viscosity"})
-    check_input(fluid.getEntry(name).isDefault(),
-                "\"Fluid\" has \"Phases\" and a \"{}\" of its own; leave that out, each phase "
-                "has one.",
+    check_input(!has_liquid || fluid.getEntry(name).isDefault(),
+                "\"Fluid\" has \"Phases\" with a \"Liquid\" and a \"{}\" of its own; leave one of "
+                "them out, each phase has one.",
                 name);
   check_input(!fluid.isSublist("Moving Tiles"),
               "\"Phases\" has a gas, but with \"Moving Tiles\" most of it would have no cells; "
@@ -229,12 +236,13 @@ Phases read_phases(const ParameterList& fluid) {
 
 namespace {
 template <int dim>
-std::vector<SignedDistance<dim>> read_shapes(const ParameterList& shapes,
+std::vector<SignedDistance<dim>> read_shapes(const ParameterList& list, const std::string& kind,
                                              const Point<dim>& gravity) {
+  const ParameterList& shapes = list.sublist(kind);
   std::vector<SignedDistance<dim>> parts;
   for (auto it = shapes.begin(); it != shapes.end(); ++it) {
-    const std::string& name = shapes.name(it);
-    const ParameterList& shape = shapes.sublist(name);
+    const std::string name = kind + "/" + shapes.name(it);
+    const ParameterList& shape = shapes.sublist(shapes.name(it));
     const auto type = shape.get<std::string>("Type");
     parts.push_back(type == "level"  ? level<dim>(name, shape, gravity)
                     : type == "box"  ? box<dim>(name, shape)
@@ -257,8 +265,8 @@ double nearest_of(const std::vector<SignedDistance<dim>>& parts, const Point<dim
 template <int dim>
 SignedDistance<dim> read_liquid(const ParameterList& fluid, const Point<dim>& gravity) {
   const ParameterList& list = fluid.sublist("Free Surface");
-  auto parts = read_shapes<dim>(list.sublist("Liquid"), gravity);
-  auto bubbles = read_shapes<dim>(list.sublist("Bubbles"), gravity);
+  auto parts = read_shapes<dim>(list, "Liquid", gravity);
+  auto bubbles = read_shapes<dim>(list, "Bubbles", gravity);
   const ParameterList& sources = fluid.sublist("Sources");
   bool has_source = false;
   for (auto it = sources.begin(); it != sources.end(); ++it)
@@ -345,7 +353,8 @@ void check_free_surface(const ParameterList& fluid, const Point<dim>& gravity,
       "advection velocity from the middle of the step would damp them. Leave the order out.");
   for (int axis = 0; axis < dim; ++axis)
     check_input(
-        !periodic[axis] || gravity[axis] == 0,
+        !periodic[axis] ||
+            (gravity[axis] == 0 && FieldFormula<dim>(fluid, "Gravity", "Fluid").is_number(axis)),
         "With a \"Free Surface\", gravity may not act along the periodic axis {}: the liquid "
         "would fall for ever.",
         "xyz"[axis]);

@@ -93,7 +93,7 @@ RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
   if (flow_.accepted_step == 0)
     return result;  // no step yet; ranks without cells have no pressures ever
   const Point<dim> at_rest =
-      flow_.parameters.density * flow_.accepted_step * flow_.parameters.forces.uniform();
+      flow_.parameters.density * flow_.accepted_step * flow_.accepted_acceleration;
   CellField pressure =
       extended_pressure<dim>(flow_.domain, flow_.geometry.state.cells, flow_.accepted_cells,
                              flow_.accepted_pressure, at_rest);
@@ -101,11 +101,14 @@ RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
   // thousandfold.
   if (liquid_ && !flow_.liquid->has_gas() && viscosity_.acts())
     liquid_->bound_pressure(pressure);
+  // Fluid that fills its domain and rests takes up what gravity has changed by.
+  const Point<dim> more = flow_.parameters.density * flow_.accepted_step *
+                          (flow_.parameters.forces.uniform() - flow_.accepted_acceleration);
   const auto values = result->getDataNonConst();
   int row = 0;
   flow_.domain.grid.for_each_owned_cell([&](int cell) {
     if (flow_.geometry.state.cells[cell] == CellState::fluid)
-      values[row++] = pressure[cell];
+      values[row++] = pressure[cell] + (liquid_ ? 0 : more.dot(flow_.domain.grid.center(cell)));
   });
   return result;
 }
@@ -137,6 +140,7 @@ bool MacFluid<dim>::begin_step(double time, double dt, const std::function<doubl
     flow_.time = time;
     flow_.set_prescribed(flow_.time, flow_.velocity);
   }
+  flow_.parameters.forces.set_time(time + dt - dt / 2);  // to the bit as after a restart
   return tiles_.begin_step(time, dt, solid_speed);
 }
 
@@ -172,6 +176,7 @@ void MacFluid<dim>::accept() {
   flow_.accepted_pressure = flow_.scaled_pressure;
   flow_.accepted_cells = flow_.geometry.state.cells;
   flow_.accepted_step = flow_.last_step;
+  flow_.accepted_acceleration = flow_.parameters.forces.uniform();
   if (gas_)
     gas_->accept(flow_.last_step);
   tiles_.accept();
@@ -184,6 +189,31 @@ Momentum<dim> MacFluid<dim>::push_sources(double time) {
   const Momentum<dim> before = audit_.momentum();
   flow_.scalars.push(flow_.geometry, time, flow_.prediction);
   return audit_.momentum() - before;
+}
+
+/// Implicit, and before all forces: they must not be damped where fluid rests.
+template <int dim>
+Momentum<dim> MacFluid<dim>::damp(double time, double dt) {
+  const FieldFormula<dim>& damping = flow_.parameters.forces.damping;
+  Momentum<dim> mine;
+  for (int axis = 0; axis < dim && !damping.vanishes(); ++axis) {
+    CellField& velocity = flow_.prediction[axis];
+    FaceMoments<dim> moments(flow_.domain.grid, axis);
+    flow_.domain.grid.for_each_owned_face(axis, [&](int cell) {
+      if (flow_.geometry.state.faces[axis][cell] != FaceState::free)
+        return;
+      const Point<dim> x = flow_.domain.grid.face_center(axis, cell);
+      const double rate = damping(0, x, time);
+      check_input(rate >= 0,
+                  "In \"Fluid\", \"Damping\" is {:g} 1/s at x = {} m, but must not be negative.",
+                  rate, fmt::join(x.begin(), x.end(), ", "));
+      const double change = -velocity[cell] * dt * rate / (1 + dt * rate);
+      velocity[cell] += change;
+      moments.add(cell, flow_.geometry.mass(axis, cell) * change);
+    });
+    mine += moments.total();
+  }
+  return mine;
 }
 
 template <int dim>
@@ -238,7 +268,9 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   ForceImpulse<dim> given;
   const MacGeometry<dim>& geometry = flow_.geometry;
   const ForceField<dim> force(flow_.domain, geometry, flow_.parameters.forces, flow_.scalars);
-  Momentum<dim> mine = push_faces(force, dt);
+  Momentum<dim> mine = damp(time + dt / 2, dt);
+  mine += push_faces(force, dt);
+  mine += push_of_pressures<dim>(flow_.domain, geometry, time + dt / 2, dt, flow_.prediction);
   if (tiles_.move())
     mine += tiles_.push_at_band_edge(force.of_surroundings(), dt);
   if (flow_.has_drops())
@@ -290,10 +322,15 @@ TransportSetting<dim> MacFluid<dim>::transport_setting(double time, double dt,
 }
 
 template <int dim>
-void MacFluid<dim>::advect_scalars(Transport<dim>& transport) {
+void MacFluid<dim>::advect_scalars(double time, Transport<dim>& transport) {
   for (Scalar& scalar : flow_.scalars.all()) {
     SideValues<dim> inflow;
-    std::copy(scalar.inflow.begin(), scalar.inflow.end(), inflow.begin());
+    for (int axis = 0; axis < dim; ++axis)
+      for (int end = 0; end < 2; ++end) {
+        const BoundarySide<dim>& side = flow_.domain.boundary.side(axis, end);
+        const FieldFormula<dim>& carried = scalar.name == "smoke" ? side.smoke : side.temperature;
+        inflow[axis][end] = [&carried, time](const Point<dim>& x) { return carried(0, x, time); };
+      }
     CellField carried(scalar.values.size(), 0.0);
     transport.advect_scalar(flow_.parameters.advection, scalar.values, inflow, carried, nullptr,
                             scalar.ambient);
@@ -331,7 +368,7 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
   if (near_interface)
     near_interface->advect(flow_.velocity, flow_.prediction);
   flow_.domain.halo.fill(flow_.prediction);
-  advect_scalars(transport);
+  advect_scalars(time, transport);
   invalid_ = transport.invalid();
   flow_.scalars.feed(flow_.geometry, time);
   for (Scalar& scalar : flow_.scalars.all())
@@ -368,7 +405,7 @@ std::array<std::array<bool, 2>, dim> MacFluid<dim>::closed_sides() const {
 template <int dim>
 Point<dim> MacFluid<dim>::wall_velocity(int axis, int end, double time) const {
   const BoundarySide<dim>& side = flow_.domain.boundary.side(axis, end);
-  return side.closed() ? side.velocity_at(axis, bounds().min(), time) : Point<dim>::Zero();
+  return side.closed() ? side.velocity_at(axis, bounds().center(), time) : Point<dim>::Zero();
 }
 
 template <int dim>

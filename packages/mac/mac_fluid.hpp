@@ -79,12 +79,13 @@ class MacFluid : public FluidDiscretization<dim> {
   bool jumped() const;
   Momentum<dim> push_sources(double time);
   /// u* += dt f; the change of momentum of free faces, of this rank.
+  Momentum<dim> damp(double time, double dt);
   Momentum<dim> push_faces(const ForceField<dim>& force, double dt);
   /// Surface tension, and the viscous solve of its implicit part. Collective.
   void push_surface(double dt);
   TransportSetting<dim> transport_setting(double time, double dt, const MovingSurface<dim>& surface,
                                           const FaceField<dim>& advection);
-  void advect_scalars(Transport<dim>& transport);
+  void advect_scalars(double time, Transport<dim>& transport);
 
   MacFlow<dim> flow_;
   MacTiles<dim> tiles_;

@@ -9,6 +9,7 @@
 #include "staggered/state/cell_sides.hpp"
 #include "staggered/state/contact_patches.hpp"
 #include "staggered/state/covered_sides.hpp"
+#include "staggered/state/cut_cells.hpp"
 #include "staggered/state/ghost_faces.hpp"
 #include "staggered/state/surface_marks.hpp"
 
@@ -236,6 +237,8 @@ MacGeometry<dim> make_geometry(const MacDomain<dim>& domain, double density,
   if (free_surface && free_surface->gas)
     find_bubbles<dim>(*free_surface, marks, fractions, geometry);
   number_pressures(domain, geometry);
+  if (cut)
+    geometry.cut_cells = find_cut_cells(domain, geometry);
   geometry.regular_tiles = find_regular_tiles(grid, geometry);
   std::vector<ControlVolume<dim>> gas_volumes;
   for (int axis = 0; axis < dim; ++axis) {

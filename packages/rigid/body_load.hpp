@@ -6,7 +6,7 @@
 
 namespace lockstep {
 
-/// Declares "Force", "Torque" and the typed sublist "Load" of a rigid body.
+/// Declares "Force" and "Torque" of a rigid body.
 template <int dim>
 void declare_load(ParameterList& body);
 

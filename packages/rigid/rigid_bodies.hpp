@@ -46,6 +46,7 @@ class RigidBodies : public SolidModel<dim>,
   RCP<const Map> dof_map() const override { return map_; }
   /// Block diagonal, a full block per body; a CrsMatrix.
   RCP<const LinearOperator> mass() const override { return mass_; }
+  void set_gravity(const Point<dim>& gravity) override { gravity_ = gravity; }
   void begin_step(double, double) override { has_moved_ = false; }
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
   void add_midpoint_correction(double dt, Vector& momentum) const override;

@@ -160,7 +160,9 @@ void Transport<dim>::advect_scalar(AdvectionScheme scheme, const CellField& s,
   advected.invalid = &implementation_->frame.invalid.cells;
   advected.field.kind = cell_centers;
   advected.field.inflow = [&](const Ray<dim>& ray) {
-    return inflow_values[ray.inflow_axis][ray.inflow_side];
+    const TiledGrid<dim>& grid = implementation_->frame.setting.grid;
+    const Point<dim> place = grid.lower() + grid.spacing() * ray.end;
+    return inflow_values[ray.inflow_axis][ray.inflow_side](place);
   };
   FieldAdvection<dim>(implementation_->frame).advect(fields, tiles);
 }

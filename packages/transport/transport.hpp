@@ -30,9 +30,9 @@ struct TransportSide {
       velocity;  ///< velocity of the inflow, at a point of the side
 };
 
-/// A scalar on each side of the domain: [axis][0 lower, 1 upper].
+/// A scalar on each side of the domain, at a point of it: [axis][0 lower, 1 upper].
 template <int dim>
-using SideValues = std::array<std::array<double, 2>, dim>;
+using SideValues = std::array<std::array<std::function<double(const Point<dim>&)>, 2>, dim>;
 
 /// Input of transport at t^n. The referenced objects must outlive the Transport.
 template <int dim>

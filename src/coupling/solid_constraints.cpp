@@ -34,6 +34,12 @@ void SolidSystem<dim>::find_reduction() {
 }
 
 template <int dim>
+void SolidSystem<dim>::set_gravity(const Point<dim>& gravity) {
+  for (const auto& solid_model : models_)
+    solid_model->set_gravity(gravity);
+}
+
+template <int dim>
 bool SolidSystem<dim>::begin_step(double time, double dt) {
   for (const auto& solid_model : models_)
     solid_model->begin_step(time, dt);
@@ -89,6 +95,8 @@ void SolidSystem<dim>::move_attached(const Vector& velocity, double time, double
 }
 
 template void SolidSystem<2>::find_reduction();
+template void SolidSystem<2>::set_gravity(const Point<2>&);
+template void SolidSystem<3>::set_gravity(const Point<3>&);
 template bool SolidSystem<2>::begin_step(double, double);
 template Reduction SolidSystem<2>::constraints(double, double, const RCP<const Vector>&) const;
 template void SolidSystem<2>::move(const Vector&, double, double);

@@ -21,6 +21,8 @@ struct SolidDescription {
   int index_in_model = 0;   ///< its place in that model's `solids()`
   int simplex_begin = 0, simplex_end = 0;  ///< its range of simplices in the snapshot
   int vertex_begin = 0, vertex_end = 0;    ///< its range of vertices in the snapshot
+  /// True for a volume that deforms as its nodes move, which are unknowns.
+  bool is_soft_body() const { return closed && !rigid && !prescribed; }
 };
 
 /// A point on the surface.

@@ -37,9 +37,8 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
   /// W_d V_S + W_k V_k with the effective velocity of every solid over the last `move` (F2) instead
   /// of unknowns [m/s], one entry per coupled volume. Collective.
   virtual std::vector<double> effective_velocity(const SolidSystem<dim>& solids) const = 0;
-  /// V G_c^T u_c: minus the outflow through coupled volumes of given velocity [m^dim/s].
-  /// Collective.
-  virtual void add_divergence(const std::vector<double>& coupled_velocity, Vector& rhs) const = 0;
+  /// rhs += what the solids push with these velocities, of the last `move` [m^dim/s]. Collective.
+  virtual void add_effective_divergence(const SolidSystem<dim>& solids, Vector& rhs) const = 0;
 
   /// M_F per coupled volume, after volume subtraction and balancing [kg]. Local.
   virtual const std::vector<double>& fluid_mass() const = 0;

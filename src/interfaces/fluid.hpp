@@ -32,6 +32,8 @@ struct PressureSide {
   GlobalIndex unknown = no_index;          ///< id in `pressure_map` if the kind is `unknown`
   Point<dim> center = Point<dim>::Zero();  ///< where the pressure lives [m]
   int solid = -1;                          ///< index in the snapshot if the kind is `solid`, or -1
+  GlobalIndex cell =
+      no_index;  ///< the fluid's own number of the cell there; no_index: there is none
   int bubble =
       -1;  ///< gas bubble (interfaces/gas.hpp) if the kind is `air` and it is in one, or -1
   /// Node of `FluidGeometry::contact_patches` if the kind is `patch`, or -1: the pressure is the
@@ -65,6 +67,14 @@ struct ControlVolume {
   /// True if no pressure unknown is beside it, so that no liquid moves with it.
   bool only_gas() const { return sides[0].unknown == no_index && sides[1].unknown == no_index; }
   bool touches_patch() const { return sides[0].patch >= 0 || sides[1].patch >= 0; }
+};
+
+/// A cell with a pressure through which the surface of a soft body passes.
+template <int dim>
+struct CutCell {
+  Box<dim> box;  ///< [m]; cells side by side have the same plane between them, to the bit
+  PressureSide<dim> pressure;  ///< an unknown, or that of a gas bubble
+  bool is_owned = true;        ///< by this rank: it counts for one
 };
 
 /// Decides how far a control volume is open to the fluid: 1 free, 0 closed (mixed, after the
@@ -101,6 +111,9 @@ struct FluidGeometry {
   /// Control volumes with open_fraction < 1 and at least one pressure unknown, gas bubble or
   /// contact patch, owned here.
   std::vector<ControlVolume<dim>> coupled_volumes;
+  /// Cells through which surfaces of soft bodies pass, if the rule cuts cells: those owned here and
+  /// those beside this rank's coupled volumes.
+  std::vector<CutCell<dim>> cut_cells;
   RCP<const Map> pressure_map;
   /// A = V G_f^T rho^-1 G_f over free faces [m^dim s / kg * 1/m^2]; symmetric positive
   /// semidefinite.
@@ -154,6 +167,7 @@ class FluidDiscretization : public PlugIn {
   const std::vector<ControlVolume<dim>>& coupled_volumes() const {
     return frozen_->coupled_volumes;
   }
+  const std::vector<CutCell<dim>>& cut_cells() const { return frozen_->cut_cells; }
   const RCP<const Map>& pressure_map() const { return frozen_->pressure_map; }
   const RCP<const LinearOperator>& pressure_block() const { return frozen_->pressure_block; }
   const PressureRegions& regions() const { return frozen_->regions; }

@@ -51,14 +51,13 @@ class GasCoupling {
   /// Returns per bubble the sum of the magnitudes of the impulses of a unit of its p̂ on all dofs,
   /// before any cancel: the scale of the round-off of `add_gas_push`. Collective.
   virtual std::vector<double> gas_push_size(int n_bubbles) const = 0;
-  /// Returns the rate at which coupled volumes of these velocities open each bubble [m^dim/s].
-  /// Collective.
-  virtual std::vector<double> gas_rates(const std::vector<double>& coupled_velocity,
+  /// Returns the rate at which the closed parts of coupled volumes open each bubble [m^dim/s]: at
+  /// these velocities of the solids, with the part of prescribed ones if asked for. Collective.
+  virtual std::vector<double> gas_rates(const Vector& solid_velocity, bool with_prescribed,
                                         int n_bubbles) const = 0;
-  /// Returns W V_S of the closed parts, for `gas_rates`, plus the part of prescribed solids if
-  /// asked for [m/s]. Collective.
-  virtual std::vector<double> closed_velocity(const Vector& solid_velocity,
-                                              bool with_prescribed) const = 0;
+  /// Returns that rate at the effective velocities of all solids over the last `move`. Collective.
+  virtual std::vector<double> effective_gas_rates(const SolidSystem<dim>& solids,
+                                                  int n_bubbles) const = 0;
 };
 
 }  // namespace lockstep

@@ -106,6 +106,9 @@ class SolidModel : public PlugIn {
   /// else acts there if nothing takes it up. Never part of S2: momentum stays exact. Default:
   /// nothing. Collective.
   virtual void add_midpoint_correction(double, Vector&) const {}
+  /// Gravity of the step that is about to begin [m/s^2], the same on all ranks. Default: nothing.
+  /// Collective.
+  virtual void set_gravity(const Point<dim>&) {}
   /// A step from `time` to time + dt begins: from here on `locked_dofs` are its own. Collective.
   virtual void begin_step(double, double) {}
   /// Dofs held at a given velocity in the present step (ids in dof_map, those of this rank). Local.

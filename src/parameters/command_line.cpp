@@ -127,7 +127,7 @@ class Setter {
                 "{}: {}, \"{}\" is a list; name one of its parameters, \"{}/...\".", place_,
                 in_list(path_), name, join_path(path_, name));
     try {
-      list_->setEntry(name, declared ? parse_as(final_type(*declared)) : infer_value(value_));
+      list_->setEntry(name, declared ? parse_like(*declared) : infer_value(value_));
     } catch (const InputError& error) {
       throw InputError(
           fmt::format("{}: {}, \"{}\" {}.", place_, in_list(path_), name, error.what()));
@@ -135,12 +135,24 @@ class Setter {
     document_.source.places[join_path(path_, name)] = place_;
   }
 
+  /// What cannot be read as numbers may be formulas, in brackets or not.
+  ParameterEntry parse_like(const ParameterEntry& declared) const {
+    const ValueType type = final_type(declared);
+    try {
+      return parse_value(type, in_braces(type));
+    } catch (const InputError&) {
+      if (!valid_ || value_rule(declared).variables.empty())
+        throw;
+    }
+    return as_strings({type, in_braces(type)});
+  }
+
   /// A shell makes several words of {1,2}, so the braces of an array may be left out.
-  ParameterEntry parse_as(ValueType type) const {
+  std::string in_braces(ValueType type) const {
     const bool array =
         type == ValueType::reals || type == ValueType::integers || type == ValueType::texts;
     const bool bare = array && trimmed(value_).substr(0, 1) != "{";
-    return parse_value(type, bare ? "{" + value_ + "}" : value_);
+    return bare ? "{" + value_ + "}" : value_;
   }
 
   Document& document_;

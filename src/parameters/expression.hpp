@@ -2,6 +2,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace lockstep {
 
@@ -10,8 +11,9 @@ namespace lockstep {
 using Variables = std::map<std::string, double>;
 
 /// A formula in the syntax of muParser: + - * / ^, comparisons, a ? b : c, sqrt, exp, ln, sin, cos,
-/// abs, min(a, b, ...), _pi and so on. Holds the addresses of the variables it was made with, so
-/// that it can be evaluated again cheaply after their values changed.
+/// abs, min(a, b, ...), _pi and so on, and table(t, t1, f1, t2, f2, ...), which is f1 at t = t1 and
+/// so on, linear in between and constant beyond. Holds the addresses of the variables it was made
+/// with, so that it can be evaluated again cheaply after their values changed.
 class Expression {
  public:
   /// `where` says in messages what the formula is for. Throws InputError for bad syntax and unknown
@@ -33,9 +35,13 @@ class Expression {
 /// Evaluates once.
 double evaluate(const std::string& formula, Variables variables, const std::string& where);
 
-/// Replaces every [formula] in `text` by its value: "Domain/Cells={[n], [2*n]}" -> "{32, 64}".
+/// Replaces every [formula] in `text` by its value: "Domain/Cells={[n], [2*n]}" -> "{32, 64}". One
+/// that names something `free` keeps its brackets; of it the variables alone become numbers.
 std::string substitute(const std::string& text, const Variables& variables,
-                       const std::string& where);
+                       const std::string& where, const std::vector<std::string>& free = {});
+
+/// Names of variables, constants and functions in a formula, in their order.
+std::vector<std::string> names_in(const std::string& formula);
 
 /// `name` with every character that a variable's name may not hold replaced by '_'.
 std::string variable_name(const std::string& name);

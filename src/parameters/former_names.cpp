@@ -39,6 +39,7 @@ const std::vector<FormerName>& former_names() {
       {"", "Half Widths", "is the third of the numbers of each of the \"Sections\" now"},
       {"", "Directions", "is called \"Locked\" now"},
       {"", "Release Time", "is called \"End\" now"},
+      {"", "Load", "is gone: \"Force\" and \"Torque\" may be formulas, with table(t, ...)"},
       // Joints.
       {"Joints", "Lower Limit", "is called \"Lower\" now and stands in the list \"Limits\""},
       {"Joints", "Upper Limit", "is called \"Upper\" now and stands in the list \"Limits\""},
@@ -51,7 +52,8 @@ const std::vector<FormerName>& former_names() {
       {"Fluid", "Smoke Rate", "is gone: a source holds the \"Smoke\" inside it at a value"},
       {"Fluid", "Temperature Rate",
        "is gone: a source holds the \"Temperature\" inside it at a value"},
-      {"Fluid", "Mean Velocity", "is called \"Velocity\" now"},
+      {"Fluid", "Initial State",
+       "is gone: the fluid's \"Velocity\" is that at the start, and may be formulas of the place"},
       // Water.
       {"Fluid", "Tension Integration", "is called \"Time Integration\" now"},
       {"Fluid", "Smallest Distance", "is always 1e-5 cells now: leave it out"},
@@ -65,6 +67,14 @@ const std::vector<FormerName>& former_names() {
       {"Fluid", "Crumbs",
        "is called \"Volume Correction\" now: \"component\" in place of \"return\", \"none\" in "
        "place of \"keep\""},
+      {"Liquid", "Amplitude", "stands in the \"Height\" now: \"[0.5 + 0.1*cos(3*x)]\""},
+      {"Liquid", "Wavelength", "stands in the \"Height\" now: \"[0.5 + 0.1*cos(3*x)]\""},
+      {"Sides", "Profile",
+       "is gone: \"Velocity\" may be a formula of the place, a parabola \"[6*y*(1 - y)]\""},
+      {"Sides", "Ramp Time",
+       "is gone: \"Velocity\" may be a formula of the time, a ramp \"[min(t, 1)]\", and a \"Wave\" "
+       "has its own"},
+      {"Sides", "End", "is gone: \"Velocity\" may be a formula of the time, \"[t < 1 ? 2 : 0]\""},
       {"Wave", "Period", "is \"Frequency\" now, one over it"},
       {"Wave", "Depth", "is that of the domain now: leave it out"},
       {"Wave", "Level", "is the \"Height\" of the fluid's \"Liquid\" now: leave it out"},

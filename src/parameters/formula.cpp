@@ -17,6 +17,19 @@ std::ostream& operator<<(std::ostream& out, const Formula& formula) {
   return out << formula.text;
 }
 
+std::vector<std::string> place_and_time(int dimension) {
+  return dimension == 2 ? std::vector<std::string>{"x", "y", "t"}
+                        : std::vector<std::string>{"x", "y", "z", "t"};
+}
+
+ParameterEntry as_strings(const Formula& formula) {
+  std::string text = formula.text;
+  std::replace(text.begin(), text.end(), '[', '(');
+  std::replace(text.begin(), text.end(), ']', ')');
+  const bool is_array = formula.type == ValueType::reals || formula.type == ValueType::integers;
+  return parse_value(is_array ? ValueType::texts : ValueType::text, text);
+}
+
 bool is_formula(ValueType type, const std::string& text) {
   const bool numeric = type == ValueType::real || type == ValueType::integer ||
                        type == ValueType::reals || type == ValueType::integers;
@@ -40,12 +53,15 @@ void evaluate_formulas(ParameterList& list, const Variables& variables, const So
       evaluate_formulas(list.sublist(name), variables, source, join_path(path, name));
     } else if (entry.isType<Formula>()) {
       const Formula formula = Teuchos::getValue<Formula>(entry);
-      if (uses_mistake(formula.text, variables))
+      if (formula.is_reduced || uses_mistake(formula.text, variables))
         continue;
       const std::string where =
           fmt::format("{}: {}, \"{}\"", source.place(join_path(path, name)), in_list(path), name);
       try {
-        list.setEntry(name, parse_value(formula.type, substitute(formula.text, variables, where)));
+        const std::string text = substitute(formula.text, variables, where, place_and_time(3));
+        list.setEntry(name, is_formula(formula.type, text)
+                                ? ParameterEntry(Formula{formula.type, text, true})
+                                : parse_value(formula.type, text));
       } catch (const InputError& error) {
         const std::string message = error.what();
         const bool is_whole = message.rfind(where, 0) == 0;

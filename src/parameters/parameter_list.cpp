@@ -217,6 +217,11 @@ void declare_required_vector(ParameterList& list, const std::string& name, int n
   set_length(list, name, n_components);
 }
 
+void set_variables(ParameterList& list, const std::string& name,
+                   const std::vector<std::string>& variables) {
+  change_rule(list, name, [&](ValueRule& rule) { rule.variables = variables; });
+}
+
 ParameterList& declare_list(ParameterList& list, const std::string& name, const std::string& doc) {
   add_list(list, name, doc, ListForm::plain);
   return list.sublist(name);

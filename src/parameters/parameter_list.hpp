@@ -101,6 +101,12 @@ template <typename T>
 void declare_required_vector(ParameterList& list, const std::string& name, int n_components,
                              const std::string& doc);
 
+/// Lets formulas of these variables stand in place of the number, or of each number of the array,
+/// that a declared parameter is: "[2*y]" in a scene, or a string (see `Expression`). FieldFormula
+/// reads such a parameter.
+void set_variables(ParameterList& list, const std::string& name,
+                   const std::vector<std::string>& variables);
+
 /// An ordinary sublist; declare its parameters in the list returned. An absent optional one stays
 /// absent, so that its required parameters are required only where the list is given.
 ParameterList& declare_list(ParameterList& list, const std::string& name, const std::string& doc);

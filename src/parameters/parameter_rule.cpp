@@ -90,6 +90,8 @@ std::string ValueRule::allowed() const {
     parts.push_back(bounds());
   if (!choices.empty())
     parts.push_back("one of " + quoted_list(choices));
+  if (!variables.empty())
+    parts.push_back(fmt::format("numbers or formulas of {}", fmt::join(variables, ", ")));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 

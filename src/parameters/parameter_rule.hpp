@@ -47,6 +47,8 @@ class ValueRule : public Rule {
   bool lower_excluded = false, upper_excluded = false;
   std::vector<std::string> choices;
   int n_components = 0;  // 0: any
+  /// Variables of the formulas, as strings, that may stand in place of a number; none: none may.
+  std::vector<std::string> variables;
 
   std::string allowed() const override;
   std::string violation(const ParameterEntry& entry) const override;

@@ -40,6 +40,7 @@ class Validator {
         const ParameterEntry* valid_entry = valid.getEntryPtr(name);
         if (!valid_entry)
           throw InputError(unknown_name(source_.place(join_path(path, name)), path, name, valid));
+        take_formulas(given, *valid_entry, name, path);
         given.getEntryPtr(name)->setDocString(valid_entry->docString());
         check_entry(entry, *valid_entry, name, path);
       });
@@ -77,6 +78,39 @@ class Validator {
     return fmt::format("{}: {}, \"{}\"", source_.place(join_path(path, name)), in_list(path), name);
   }
 
+  /// Puts strings in the place of a formula of place and time.
+  void take_formulas(ParameterList& given, const ParameterEntry& valid, const std::string& name,
+                     const std::string& path) const {
+    const ParameterEntry& entry = given.getEntry(name);
+    if (!entry.isType<Formula>() || valid.isList())
+      return;
+    const Formula formula = Teuchos::getValue<Formula>(entry);
+    if (!formula.is_reduced)
+      return;
+    check_input(!value_rule(valid).variables.empty(),
+                "{} is \"{}\", a formula of place or time, but takes constants only.",
+                subject(path, name), formula.text);
+    given.setEntry(name, as_strings(formula));
+  }
+
+  /// True if formulas stand in place of numbers. Throws InputError for one that cannot be read.
+  bool are_formulas(const ParameterEntry& entry, const ParameterEntry& valid,
+                    const std::string& name, const std::string& path) const {
+    if (valid.isList() || value_rule(valid).variables.empty())
+      return false;
+    std::vector<std::string> formulas;
+    if (entry.isType<std::string>() && value_type(valid) == ValueType::real)
+      formulas = {Teuchos::getValue<std::string>(entry)};
+    else if (entry.isType<ParameterArray<std::string>>() && value_type(valid) == ValueType::reals)
+      formulas = Teuchos::getValue<ParameterArray<std::string>>(entry).toVector();
+    Variables variables;
+    for (const std::string& variable : value_rule(valid).variables)
+      variables[variable] = 0;
+    for (const std::string& formula : formulas)
+      const Expression readable(formula, variables, subject(path, name));
+    return !formulas.empty();
+  }
+
   void check_entry(const ParameterEntry& entry, const ParameterEntry& valid,
                    const std::string& name, const std::string& path) const {
     const ValueType type = final_type(entry), wanted = value_type(valid);
@@ -85,8 +119,9 @@ class Validator {
                 subject(path, name), name);
     check_input(!entry.isList() || valid.isList(), "{} must be a parameter ({}), not a list.",
                 subject(path, name), type_name(wanted));
-    check_input(type == wanted, "{} has type \"{}\", but needs \"{}\": write type=\"{}\"{}.",
-                subject(path, name), type_name(type), type_name(wanted), type_name(wanted),
+    check_input(type == wanted || are_formulas(entry, valid, name, path),
+                "{} has type \"{}\", but needs \"{}\": write type=\"{}\"{}.", subject(path, name),
+                type_name(type), type_name(wanted), type_name(wanted),
                 type == ValueType::integer && wanted == ValueType::real
                     ? fmt::format(" value=\"{}\"", value_text(entry))
                     : "");

@@ -137,7 +137,8 @@ void declare_scene_language(ParameterList& scene, int dimension) {
       scene, "Constants",
       "Named numbers (double or int). Any number of the scene may be a formula of them in "
       "brackets, "
-      "value=\"[2*R]\" or \"{[R], 0}\", in the syntax of muParser; a constant of those before it.");
+      "value=\"[2*R]\" or \"{[R], 0}\", in the syntax of muParser; a constant of those before it. "
+      "Some may also be formulas of the place x, y, z and the time t, whose names constants hide.");
   declare_free_sublist(
       scene, "Defaults",
       "Values for all solids that do not say otherwise; a list that bears the name of a type, "

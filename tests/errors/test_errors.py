@@ -224,7 +224,17 @@ CASES = [
          change=(SIDE, value("Type", "string", "open") + value("Velocity", "Array(double)", "{1, 0}"))),
     *[Case(f"{parameter} of an open side", f"\"{parameter}\" has no meaning on a side of type \"open\"",
            change=(SIDE, value("Type", "string", "open") + value(parameter, "double", "1")))
-      for parameter in ("Ramp Time", "End", "Smoke", "Temperature")],
+      for parameter in ("Smoke", "Temperature")],
+    Case("pressure of a wall", "\"Pressure\" has no meaning on a side of type \"wall\"",
+         change=(SIDE, SIDE + value("Pressure", "double", "1"))),
+    Case("a wall that leaves by a formula", "would leave the domain",
+         change=(SIDE, SIDE + value("Velocity", "Array(double)", "{[sin(t)], 0}"))),
+    *[Case(f"{parameter} of a side", f"\"{parameter}\" is gone: \"Velocity\" may be a formula",
+           change=(SIDE, INFLOW + value(parameter, kind, text)))
+      for parameter, kind, text in (("Ramp Time", "double", "1"), ("End", "double", "1"), ("Profile", "string", "parabolic"))],
+    Case("bad formulas of a side", ["There are 2 mistakes", "line ", "\"Velocity\": cannot evaluate \"(6*Y*(1 - y))\"", "Did you mean \"y\"",
+                                    "\"Temperature\": cannot evaluate \"(sin(t)\""],
+         change=(SIDE, INFLOW + value("Velocity", "Array(double)", "{[6*Y*(1 - y)], 0}") + value("Temperature", "double", "[(sin(t]"))),
     Case("a warm inflow of a fluid without temperature", ["x lower", "the fluid carries none", "\"Fluid/Temperature\""],
          change=(SIDE, INFLOW + value("Temperature", "double", "300"))),
     Case("an end before the start of the file", "must be later", change=(END, value("End", "double", "-1"))),

@@ -9,8 +9,8 @@ from pathlib import Path
 
 ROOT = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path(__file__).resolve().parents[2]
 
-# 140 were reached on 2026-11-26, from 199; masses, loads and lines that users asked for are 7 more. Who adds a name takes another away, merges two that say the same, or makes one a constant.
-MOST_NAMES = 147
+# 140 were reached on 2026-11-26, from 199; masses and lines that users asked for are 5 more. Who adds a name takes another away, merges two that say the same, or makes one a constant.
+MOST_NAMES = 145
 ROW = re.compile(r"^\| ([^|]+) \| (?:int|double|bool|string|Array)", re.MULTILINE)
 
 

@@ -41,7 +41,8 @@ def liquid(rng, world, down):
     surface = point(rng, world, 0.2, 0.8)
     parts = {"Pool": {"Type": "level", "Height": sum(u * x for u, x in zip(up, surface))}}
     if rng.random() < 0.3:
-        parts["Pool"].update({"Amplitude": rng.uniform(0, 1) * world.h, "Wavelength": rng.uniform(6, 20) * world.h})
+        amplitude, wavelength = rng.uniform(0, 1) * world.h, rng.uniform(6, 20) * world.h
+        parts["Pool"]["Height"] = f"{parts['Pool']['Height']} + {amplitude}*cos(2*_pi/{wavelength}*x)"
     if rng.random() < 0.4:
         parts["Drop"] = {"Type": "ball", "Center": point(rng, world), "Radius": rng.uniform(1, 4) * world.h}
     if rng.random() < 0.2:

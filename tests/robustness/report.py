@@ -9,6 +9,7 @@ import joints
 import known_failures
 import liquids
 import long_tension
+import phases
 import resting
 import seams
 from runs import program
@@ -25,6 +26,7 @@ FAMILIES = {
     "semi-implicit tension": long_tension.FIRST_SEED,
     "periodic seams": seams.FIRST_SEED,
     "contact in water": resting.FIRST_SEED,
+    "two phases": phases.FIRST_SEED,
 }
 # Solids, and how often each thing that a scene may say was drawn.
 FEATURES = {

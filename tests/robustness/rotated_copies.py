@@ -7,7 +7,7 @@ DIRECTIONS = {"Velocity", "Gravity", "Body Force", "Force", "Amplitude", "Offset
 AXIAL = {"Angular Velocity", "Torque", "Angular Amplitude"}  # turn as directions do, numbers in 2D
 IN_SPACE = {"Center", "Position", "Point"}
 BOXES_OF_BODIES = {"Pin", "Pull", "Spring", "Root"}  # in the body's own coordinates
-NOT_TURNED = ("taylor green", '"linear"', "particle level set", "volume of fluid", "Vortices", "Wavelength", "Trapped Air")
+NOT_TURNED = ('"Velocity" type="Array(string)"', "cos(2*_pi/", '"linear"', "particle level set", "volume of fluid", "Vortices", "Wavelength", "Trapped Air")
 QUARTER = math.pi / 2
 
 

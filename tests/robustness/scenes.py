@@ -12,6 +12,7 @@ import gases
 import joints
 import liquids
 import long_tension
+import phases
 import resting
 import seams
 import solvers
@@ -138,10 +139,11 @@ def sides(world):
         if side["Type"] == "wall" and world.does_work(0.15):
             side["Velocity"] = world.vector(0.5 * world.speed)
             side["Velocity"][axis] = 0.0
-            if rng.random() < 0.3:
-                side["Ramp Time"] = rng.uniform(0, 2) * world.dt
+            ramp = f"min(max(t/{rng.uniform(0, 2) * world.dt}, 0), 1)" if rng.random() < 0.3 else "1"
             if rng.random() < 0.2:
-                side["End"] = world.start + rng.uniform(0, 4) * world.dt
+                ramp += f"*(t > {world.start + rng.uniform(0, 4) * world.dt} ? 0 : 1)"
+            if ramp != "1":
+                side["Velocity"] = [f"{v}*{ramp}" if v else "0" for v in side["Velocity"]]
         lists[name] = side
     world.facts.open_sides = any(side["Type"] in ("open", "inflow") for side in kinds.values())
     world.facts.periodic = any(side["Type"] == "periodic" for side in kinds.values())
@@ -153,10 +155,14 @@ def inflow(world, axis, end):
     velocity = [0.0] * world.dimension
     velocity[axis] = (1 if end == 0 else -1) * rng.uniform(0.2, 1) * world.speed
     side = {"Type": "inflow", "Velocity": velocity}
+    factors = []
     if rng.random() < 0.3:
-        side["Profile"] = "parabolic"
+        factors += [f"6*(({a}) - ({lower}))*(({upper}) - ({a}))/({(upper - lower) ** 2})"
+                    for a, lower, upper in zip(AXES, world.lower, world.upper) if AXES.index(a) != axis]
     if rng.random() < 0.3:
-        side["Ramp Time"] = rng.uniform(0, 3) * world.dt
+        factors.append(f"min(max(t/{rng.uniform(0, 3) * world.dt}, 0), 1)")
+    if factors:
+        side["Velocity"] = ["*".join([str(v), *factors]) if v else "0" for v in velocity]
     if rng.random() < 0.3:
         middle = [(a + b) / 2 for a, b in zip(world.lower, world.upper)]
         half = [rng.uniform(0.25, 0.45) * (b - a) for a, b in zip(world.lower, world.upper)]
@@ -224,16 +230,19 @@ def fluid(world, side_lists):
         chosen["Body Force"] = world.vector(world.speed / world.dt / 10)
     scalars(world, chosen, side_lists)
     state = rng.choice(["at rest", "at rest", "uniform", "taylor green", "rotation"])
-    chosen["Initial State"] = {"Type": state}
     length = max(b - a for a, b in zip(world.lower, world.upper))
     if state == "uniform":
-        chosen["Initial State"]["Velocity"] = world.vector(world.speed)
+        chosen["Velocity"] = world.vector(world.speed)
     elif state == "taylor green":
-        chosen["Initial State"].update({"Amplitude": 0.7 * world.speed, "Wavelength": length / rng.choice([1, 2])})
+        amplitude, k = 0.7 * world.speed, 2 * math.pi / length * rng.choice([1, 2])
+        chosen["Velocity"] = [f"{amplitude}*sin({k}*x)*cos({k}*y)", f"-{amplitude}*cos({k}*x)*sin({k}*y)", "0"][:world.dimension]
     elif state == "rotation":
         rate = world.rotation(world.speed / length)
-        chosen["Initial State"].update({"Angular Velocity": [rate] if world.dimension == 2 else rate,
-                                        "Center": [(a + b) / 2 for a, b in zip(world.lower, world.upper)]})
+        center = [(a + b) / 2 for a, b in zip(world.lower, world.upper)]
+        arm = [f"({axis} - ({middle}))" for axis, middle in zip("xyz", center)]
+        w = [f"({w})" for w in (rate if world.dimension == 3 else [0, 0, rate])]
+        chosen["Velocity"] = [f"{w[1]}*{arm[2]} - {w[2]}*{arm[1]}", f"{w[2]}*{arm[0]} - {w[0]}*{arm[2]}",
+                              f"{w[0]}*{arm[1]} - {w[1]}*{arm[0]}"] if world.dimension == 3 else [f"-{w[2]}*{arm[1]}", f"{w[2]}*{arm[0]}"]
     return chosen
 
 
@@ -345,7 +354,7 @@ def observers(world):
 def random_scene(seed):
     """The scene that this seed names, as a Scene."""
     world = World(seed)
-    at_seam, rests = seams.FIRST_SEED <= seed < resting.FIRST_SEED, seed >= resting.FIRST_SEED
+    at_seam, rests = seams.FIRST_SEED <= seed < resting.FIRST_SEED, resting.FIRST_SEED <= seed < phases.FIRST_SEED
     if at_seam:
         seams.fill_tiles(world)
     side_lists = sides(world)
@@ -364,6 +373,8 @@ def random_scene(seed):
         gases.trap_air(world, content, seed)
     elif rests:
         resting.lay_down(world, content, seed)
+    elif seed >= phases.FIRST_SEED:
+        phases.give_air_mass(world, content, seed)
     content["Coupling"] = coupling(world)
     content["Contact"] = contact(world, content["Solids"])
     if rests:

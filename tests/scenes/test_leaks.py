@@ -22,7 +22,7 @@ PADDLE = {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (0., .9),
 
 def scene(solids, watch, dry=(), full=()):
     """A tank in which a paddle makes waves."""
-    liquids = {"Pool": {"Type": "level", "Height": .6, "Amplitude": .12, "Wavelength": 1.}}
+    liquids = {"Pool": {"Type": "level", "Height": "0.6 + 0.12*cos(2*_pi*x)"}}
     if full:
         liquids["Fill"] = {"Type": "ball", "Center": full, "Radius": .25}
     surface = {"Liquid": liquids, "Watch": watch}

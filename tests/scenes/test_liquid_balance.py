@@ -48,7 +48,7 @@ class LiquidBalance(unittest.TestCase):
                    "Liquid": {"Drop": {"Type": "ball", "Center": (.51, .503), "Radius": .25}}}
         return scene((2 * n, n), (2., 1.), surface, {"CFL": .5},
                      sides=sides(x_lower="periodic", x_upper="periodic", y_lower="open", y_upper="open"),
-                     fluid={"Density": 1., "Gravity": (0., 0.), "Initial State": {"Type": "uniform", "Velocity": (1., 0.)}})
+                     fluid={"Density": 1., "Gravity": (0., 0.), "Velocity": (1., 0.)})
 
     def test_a_drop_that_flies_keeps_its_energy(self):
         for model, n in ("level set", 32), ("particle level set", 32), ("volume of fluid", 64):
@@ -78,7 +78,7 @@ class LiquidBalance(unittest.TestCase):
                     scene((24, 32), (.6, .4), {"Interface": {"Type": model},
                                                "Liquid": {"Start": {"Type": "box", "Lower": (-1., -.05), "Upper": (.1, .05)}}},
                           {"Fixed Step": .02}, lower=(0., -.4), sides=jet,
-                          fluid={"Gravity": (0., 0.), "Initial State": {"Type": "uniform", "Velocity": (1., 0.)}}),
+                          fluid={"Gravity": (0., 0.), "Velocity": (1., 0.)}),
                     "--end-time", 3)
                 pushes = [(t, -i / .02) for t, i in zip(column(rows, "time"), column(rows, "boundary_impulse_x"))]
                 early, late = (mean(f for t, f in pushes if begin < t <= begin + .5) for begin in (1, 2.5))

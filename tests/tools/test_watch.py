@@ -126,7 +126,7 @@ class Watch(unittest.TestCase):
             self.assertEqual([run["frames"][0]["box"]["cells"], again["frames"][0]["box"]["cells"]], [[32, 32, 1], [24, 24, 1]])
 
     def test_failed(self):
-        sides = [f"{INFLOW}Type=inflow", f"{INFLOW}Velocity={{1, 0}}", f"{INFLOW}Ramp Time=1"]
+        sides = [f"{INFLOW}Type=inflow", f"{INFLOW}Velocity={{min(t, 1), 0}}"]
         self.assertEqual(self.run_to_end(*(word for side in sides for word in ("--set", side))), 3)
         with self.watched() as address:
             _, facts = self.run_at(address)

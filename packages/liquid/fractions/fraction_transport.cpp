@@ -77,9 +77,9 @@ typename FractionTransport<dim>::Inflow FractionTransport<dim>::through(
   const bool at_side = place[axis] == (side == 0 ? 0 : grid.n_cells()[axis] - 1);
   if (!at_side)
     return {0, false, false};  // at the rim of the stored tiles liquid waits for others
-  const bool is_open = domain_.boundary.side(axis, side).type == SideType::open;
-  // air comes in from outside, unless the boundary condition is an inflow of liquid
-  return {is_open && passed > 0 ? 0 : like_here, true, true};
+  const bool takes_air = domain_.boundary.side(axis, side).lets_in_air();
+  // air comes in from outside, unless the side gives a velocity or a pressure
+  return {takes_air && passed > 0 ? 0 : like_here, true, true};
 }
 
 template <int dim>
@@ -127,7 +127,7 @@ void FractionTransport<dim>::leave_covered_cells(const SolidCells<dim>& solids,
           place[axis] != (side == 0 ? 0 : grid.n_cells()[axis] - 1))
         continue;
       double inwards = (side == 0 ? 1 : -1) * velocity[axis][face] * dt / grid.spacing();
-      if (domain_.boundary.side(axis, side).type == SideType::open)
+      if (domain_.boundary.side(axis, side).lets_in_air())
         inwards = std::min(inwards, 0.0);
       const double real = open_part(axis, face) * inwards * fractions.liquid[cell];
       fractions.defect[cell] += real;

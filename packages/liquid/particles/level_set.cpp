@@ -115,8 +115,7 @@ double LevelSet<dim>::advect(const InterfaceStep<dim>& step) {
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = domain_.boundary.side(axis, end);
-      // An open side lets in air.
-      setting.sides[axis][end].inflow = side.type == SideType::open;
+      setting.sides[axis][end].inflow = side.lets_in_air();
       setting.sides[axis][end].closed = side.closed();
     }
   Transport<dim> transport(setting);

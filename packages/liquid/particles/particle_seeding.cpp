@@ -163,7 +163,7 @@ class Seeder {
   bool knows_phi(const Point<dim>& place) const {
     for (int a = 0; a < dim; ++a)
       for (int end = 0; end < 2; ++end)
-        if (domain_.boundary.side(a, end).type == SideType::open &&
+        if (domain_.boundary.side(a, end).lets_in_air() &&
             (end == 0 ? place[a] : domain_.grid.n_cells()[a] - place[a]) < 0.5)
           return false;
     return true;

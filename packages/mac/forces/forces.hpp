@@ -1,5 +1,6 @@
 #pragma once
 #include "mac/forces/scalars.hpp"
+#include "parameters/field_formula.hpp"
 #include "staggered/state/mac_geometry.hpp"
 
 namespace lockstep {
@@ -7,12 +8,19 @@ namespace lockstep {
 /// Accelerations of the fluid.
 template <int dim>
 struct ForceParameters {
-  Point<dim> gravity = Point<dim>::Zero();  ///< g [m/s^2]
+  Point<dim> gravity = Point<dim>::Zero();  ///< g in the middle of the present step [m/s^2]
+  FieldFormula<dim> gravity_law;            ///< of the time alone; what `gravity` is taken from
   Point<dim> body = Point<dim>::Zero();     ///< any other uniform acceleration [m/s^2]
+  FieldFormula<dim> damping;                ///< rate at which the velocity decays [1/s]
   double expansion = 0;                     ///< Boussinesq, beta [1/K]
   double reference_temperature = 0;         ///< T0, where buoyancy vanishes [K]
   double smoke_weight = 0;                  ///< relative excess density of smoke of density 1 [1]
 
+  /// Takes the gravity of that time. Local.
+  void set_time(double time) {
+    if (!gravity_law.are_numbers())
+      gravity = gravity_law.vector(Point<dim>::Zero(), time);
+  }
   /// Acceleration of a fluid without scalars [m/s^2].
   Point<dim> uniform() const { return gravity + body; }
 };

@@ -1,6 +1,7 @@
 #include "mac/forces/scalars.hpp"
 
 #include "base/errors.hpp"
+#include "parameters/field_formula.hpp"
 #include "staggered/domain/parameter_values.hpp"
 
 namespace lockstep {
@@ -10,10 +11,16 @@ template <int dim>
 void declare_scalar(ParameterList& fluid, const std::string& name, const std::string& unit,
                     const std::string& doc) {
   ParameterList& list = declare_optional_list(fluid, name, doc);
-  declare(list, "Ambient", 0.0, "Initial value outside all \"Regions\", " + unit + ".");
+  declare(list, "Ambient", 0.0,
+          "Value far away, and at the start unless others say more, " + unit + ".");
+  declare_optional<double>(list, "Value",
+                           "Value at the start outside all \"Regions\", " + unit +
+                               ", such as the formula \"[300 + 5*y]\"; default: \"Ambient\".");
+  set_variables(list, "Value", place<dim>());
   ParameterList region;
   declare_shape<dim>(region);
-  declare(region, "Value", 1.0, "Initial value inside, " + unit + ".");
+  declare(region, "Value", 1.0, "Value inside at the start, " + unit + ".");
+  set_variables(region, "Value", place<dim>());
   declare_named_sublists(list, "Regions", "Boxes and balls with another initial value.", region);
 }
 
@@ -25,21 +32,21 @@ Scalar read_scalar(const MacDomain<dim>& domain, const ParameterList& list, cons
   scalar.unit = unit;
   scalar.ambient = list.get<double>("Ambient");
   scalar.values.assign(domain.grid.n_stored_cells(), scalar.ambient);
-  for (int axis = 0; axis < dim; ++axis) {
-    const auto& sides = domain.boundary.sides[axis];
-    if (name == "smoke")
-      scalar.inflow.push_back({sides[0].smoke, sides[1].smoke});
-    else
-      scalar.inflow.push_back({sides[0].temperature, sides[1].temperature});
+  const std::string where = name == "smoke" ? "Fluid/Smoke" : "Fluid/Temperature";
+  if (list.isParameter("Value")) {
+    const FieldFormula<dim> value(list, "Value", where);
+    domain.grid.for_each_stored_cell(
+        [&](int cell) { scalar.values[cell] = value(0, domain.grid.center(cell), 0); });
   }
   const ParameterList& regions = list.sublist("Regions");
   for (auto it = regions.begin(); it != regions.end(); ++it) {
     const ParameterList& region = regions.sublist(regions.name(it));
     const RegionShape<dim> shape = read_shape<dim>(region);
-    const double value = region.get<double>("Value");
+    const FieldFormula<dim> value(region, "Value", where + "/Regions/" + regions.name(it));
     domain.grid.for_each_stored_cell([&](int cell) {
-      if (shape.contains(domain.grid.center(cell)))
-        scalar.values[cell] = value;
+      const Point<dim> x = domain.grid.center(cell);
+      if (shape.contains(x))
+        scalar.values[cell] = value(0, x, 0);
     });
   }
   return scalar;

@@ -30,8 +30,7 @@ struct ScalarSource {
 struct Scalar {
   std::string name;  ///< "smoke", "temperature"
   std::string unit;
-  double ambient = 0;                           ///< where nothing else is known
-  std::vector<std::array<double, 2>> inflow{};  ///< [axis][end]
+  double ambient = 0;  ///< where nothing else is known
   CellField values{};
 };
 

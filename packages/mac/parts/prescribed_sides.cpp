@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "staggered/state/face_moments.hpp"
 
 namespace lockstep {
 
@@ -14,7 +15,7 @@ void for_each_inflow(const Boundary<dim>& boundary, const Function& f) {
   for (int axis = 0; axis < dim; ++axis) {
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = boundary.side(axis, end);
-      if (side.type == SideType::inflow && (side.wave || side.velocity[axis] != 0))
+      if (side.type == SideType::inflow && side.moves())
         f(axis, end, side);
     }
   }
@@ -44,6 +45,33 @@ std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<dim>& domain,
 }
 
 template <int dim>
+Momentum<dim> push_of_pressures(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                double time, double dt, FaceField<dim>& velocity) {
+  Momentum<dim> mine;
+  for (int axis = 0; axis < dim; ++axis) {
+    const auto& sides = domain.boundary.sides[axis];
+    if (sides[0].pressure.vanishes() && sides[1].pressure.vanishes())
+      continue;
+    FaceMoments<dim> moments(domain.grid, axis);
+    domain.grid.for_each_owned_face(axis, [&](int cell) {
+      if (geometry.state.faces[axis][cell] != FaceState::free)
+        return;
+      const FaceCells beside = cells_of_face(domain.grid, geometry.state.cells, axis, cell);
+      if (!beside.at_side())
+        return;
+      const int end = beside.lower < 0 ? 0 : 1;
+      const double pressure = sides[end].pressure(0, domain.grid.face_center(axis, cell), time);
+      const double change =
+          (end == 0 ? dt : -dt) * geometry.face_table(axis, cell).gradient * pressure;
+      velocity[axis][cell] += change;
+      moments.add(cell, geometry.mass(axis, cell) * change);
+    });
+    mine += moments.total();
+  }
+  return mine;
+}
+
+template <int dim>
 std::vector<std::pair<std::string, std::string>> notes_of_inflows(
     const MacDomain<dim>& domain, const MacGeometry<dim>& geometry) {
   std::vector<std::pair<std::string, std::string>> notes;
@@ -57,27 +85,33 @@ std::vector<std::pair<std::string, std::string>> notes_of_inflows(
     }
     double open_area = 0;
     int n_open = 0, n_partial = 0;  // faces
-    InflowShape<dim> opening = side.shape;
-    opening.parabolic = false;
     for (const auto& [face_axis, cell] : geometry.prescribed) {
       const bool is_upper = geometry.state.cells[cell] == CellState::outside;
       if (face_axis != axis || is_upper != (end == 1))
         continue;
-      const double open = opening.mean_factor(axis, domain.face_box(axis, cell));
+      Box<dim> part;
+      const double open = side.opening.share(axis, domain.face_box(axis, cell), part);
       open_area += open * geometry.face_table.area();
       n_open += open > 0;
       n_partial += open > 0 && open < 1;
     }
     sum_over_ranks(domain.grid.comm(), open_area, n_open, n_partial);
-    notes.emplace_back(
-        "inflow " + side_name(axis, end),
-        fmt::format("{:.6g} m^{}/s through {:.6g} m^{}: {} faces, {} of them in part",
-                    std::abs(side.velocity[axis]) * open_area, dim, open_area, dim - 1, n_open,
-                    n_partial));
+    const std::string rate =
+        side.velocity.is_number(axis)
+            ? fmt::format("{:.6g} m^{}/s",
+                          std::abs(side.velocity(axis, domain.grid.lower(), 0)) * open_area, dim)
+            : "by formula";
+    notes.emplace_back("inflow " + side_name(axis, end),
+                       fmt::format("{} through {:.6g} m^{}: {} faces, {} of them in part", rate,
+                                   open_area, dim - 1, n_open, n_partial));
   });
   return notes;
 }
 
+template Momentum<2> push_of_pressures<2>(const MacDomain<2>&, const MacGeometry<2>&, double,
+                                          double, FaceField<2>&);
+template Momentum<3> push_of_pressures<3>(const MacDomain<3>&, const MacGeometry<3>&, double,
+                                          double, FaceField<3>&);
 template std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<2>&, const MacGeometry<2>&,
                                                      double);
 template std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<3>&, const MacGeometry<3>&,

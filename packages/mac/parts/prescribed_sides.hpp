@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "interfaces/momentum.hpp"
 #include "interfaces/prescribed_flux.hpp"
 #include "staggered/state/mac_geometry.hpp"
 
@@ -12,6 +13,12 @@ namespace lockstep {
 template <int dim>
 std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<dim>& domain,
                                             const MacGeometry<dim>& geometry, double time);
+/// Pushes the owned free faces of open sides by the sides' pressures at `time` over `dt` [s], as if
+/// they were those of cells beyond; the pressure that is solved for is 0 there. Returns the impulse
+/// on this rank's fluid. Local.
+template <int dim>
+Momentum<dim> push_of_pressures(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                double time, double dt, FaceField<dim>& velocity);
 /// Notes on each inflow as the grid has it, title and text. Collective.
 template <int dim>
 std::vector<std::pair<std::string, std::string>> notes_of_inflows(const MacDomain<dim>& domain,

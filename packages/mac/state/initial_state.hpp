@@ -1,15 +1,12 @@
 #pragma once
-#include "parameters/parameter_list.hpp"
+#include "parameters/field_formula.hpp"
 #include "staggered/domain/mac_domain.hpp"
 
 namespace lockstep {
 
-/// Declares the typed list "Initial State" in the fluid's list.
+/// The velocity at the start at all stored faces, from the parameter "Velocity" of the fluid.
+/// Throws InputError if a formula is not finite somewhere. Local.
 template <int dim>
-void declare_initial_state(ParameterList& fluid);
-
-/// The velocity of the list "Initial State" at all stored faces. Local.
-template <int dim>
-FaceField<dim> initial_velocity(const TiledGrid<dim>& grid, const ParameterList& initial_state);
+FaceField<dim> initial_velocity(const TiledGrid<dim>& grid, const FieldFormula<dim>& formula);
 
 }  // namespace lockstep

@@ -18,7 +18,7 @@ MacFlow<dim>::MacFlow(const ParameterList& fluid, const ParameterList& box,
       scalars(domain, fluid),
       ray_halo(domain.grid),
       blocks(lattice_blocks(domain.grid)),
-      velocity(initial_velocity<dim>(domain.grid, fluid.sublist("Initial State"))) {
+      velocity(initial_velocity<dim>(domain.grid, FieldFormula<dim>(fluid, "Velocity", "Fluid"))) {
   domain.halo.fill(velocity);
   prediction = velocity;
   scaled_pressure.assign(domain.grid.n_stored_cells(), 0.0);
@@ -144,6 +144,8 @@ void MacFlow<dim>::load(const CheckpointReader& checkpoint) {
   time = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step = checkpoint.file().read_attribute<double>("fluid", "last_step");
   accepted_step = last_step;
+  parameters.forces.set_time(time - last_step / 2);
+  accepted_acceleration = parameters.forces.uniform();
   if (liquid)
     liquid->load(checkpoint);
   forget_speed();

@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "mac/state/initial_state.hpp"
 #include "mac/tiles/moving_tiles.hpp"
+#include "parameters/formula.hpp"
 #include "staggered/domain/parameter_values.hpp"
 
 namespace lockstep {
@@ -29,10 +29,28 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
   declare_between(list, "Smallest Link", 0.2, 0.01, 1.0,
                   "Viscous links that end on a surface are not taken shorter than this part of a "
                   "cell [1]; shorter ones would make the viscous solve stiff.");
-  declare_vector(list, "Gravity", filled_array(dim, 0.0), dim,
-                 "Acceleration of gravity, on fluid and solids [m/s^2].");
+  declare_vector(list, "Velocity", filled_array(dim, 0.0), dim,
+                 dim == 2 ? "Velocity at the start [m/s]; formulas of the place x, y [m], such as "
+                            "\"[sin(3*x)*cos(3*y)]\". What of it has a divergence goes with the "
+                            "first step."
+                          : "Velocity at the start [m/s]; formulas of the place x, y, z [m], such "
+                            "as \"[sin(3*x)*cos(3*y)]\". What of it has a divergence goes with "
+                            "the first step.");
+  set_variables(list, "Velocity", place<dim>());
+  declare_vector(
+      list, "Gravity", filled_array(dim, 0.0), dim,
+      "Acceleration of gravity, on fluid and solids [m/s^2]; in a tank that moves formulas "
+      "of the time t [s], such as \"{[0.5*sin(3*t)], -9.81}\". Where up is, a level and "
+      "the side of the atmosphere ask of that at t = 0.");
+  set_variables(list, "Gravity", {"t"});
   declare_vector(list, "Body Force", filled_array(dim, 0.0), dim,
                  "Uniform acceleration of the fluid alone, besides gravity [m/s^2].");
+  declare(
+      list, "Damping", 0.0,
+      "Rate at which the velocity decays [1/s], or a formula of the place [m] and the time [s]: "
+      "a beach that takes up waves, \"[8*max((x - 4)/2, 0)^2]\".");
+  set_at_least(list, "Damping", 0);
+  set_variables(list, "Damping", place_and_time(dim));
   std::vector<std::string> schemes;
   for (const auto& [name, scheme] : advection_schemes())
     schemes.push_back(name);
@@ -59,7 +77,6 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
   if (interfaces)
     declare_free_surface<dim>(*interfaces, list);
   declare_moving_tiles<dim>(list);
-  declare_initial_state<dim>(list);
   return list;
 }
 
@@ -71,7 +88,9 @@ MacParameters<dim> read_mac_parameters(const ParameterList& fluid) {
   parameters.viscosity.viscosity = parameters.phases.largest_viscosity();
   parameters.viscosity.smallest_coupling_fraction = fluid.get<double>("Smallest Link");
   parameters.viscosity.has_air = fluid.isSublist("Free Surface");
-  parameters.forces.gravity = point_value<dim>(fluid, "Gravity");
+  parameters.forces.gravity_law = FieldFormula<dim>(fluid, "Gravity", "Fluid");
+  parameters.forces.gravity = gravity_at_start<dim>(fluid);
+  parameters.forces.damping = FieldFormula<dim>(fluid, "Damping", "Fluid");
   parameters.forces.body = point_value<dim>(fluid, "Body Force");
   parameters.forces.expansion = fluid.get<double>("Thermal Expansion");
   if (fluid.isSublist("Temperature"))

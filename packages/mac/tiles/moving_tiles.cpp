@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "parameters/field_formula.hpp"
 #include "staggered/domain/fitting_domain.hpp"
 #include "staggered/domain/inflow_scalars.hpp"
 #include "staggered/domain/parameter_values.hpp"
@@ -54,13 +55,13 @@ void declare_moving_tiles(ParameterList& fluid) {
 template <int dim>
 MovingTiles<dim>::MovingTiles(const ParameterList& fluid, const DomainDescription<dim>& domain)
     : lattice_(domain.grid) {
-  const Point<dim> force =
-      point_value<dim>(fluid, "Gravity") + point_value<dim>(fluid, "Body Force");
+  const FieldFormula<dim> gravity(fluid, "Gravity", "Fluid");
+  const Point<dim> force = gravity_at_start<dim>(fluid) + point_value<dim>(fluid, "Body Force");
   for (int axis = 0; axis < dim; ++axis)
-    check_input(force[axis] == 0 || !domain.grid.periodic[axis],
+    check_input((gravity.is_number(axis) && force[axis] == 0) || !domain.grid.periodic[axis],
                 "In \"Fluid\", \"Moving Tiles\" takes the fluid far away to be at rest, but along "
-                "the periodic axis {} a force of {} m/s^2 would make it move; leave it out.",
-                "xyz"[axis], force[axis]);
+                "the periodic axis {} a force would make it move; leave it out.",
+                "xyz"[axis]);
   const ParameterList& list = fluid.sublist("Moving Tiles");
   margin_ = list.get<int>("Tile Margin");
   threshold_ = list.get<double>("Threshold");
@@ -72,13 +73,17 @@ MovingTiles<dim>::MovingTiles(const ParameterList& fluid, const DomainDescriptio
     asked_.push_back({read_shape<dim>(source).bounds(),
                       source.isParameter("End") ? source.get<double>("End") : for_ever});
   });
-  if (fluid.sublist("Initial State").get<std::string>("Type") != "at rest") {
+  const auto has_formula = [&](const char* scalar) {
+    return fluid.isSublist(scalar) && fluid.sublist(scalar).isParameter("Value");
+  };
+  if (!FieldFormula<dim>(fluid, "Velocity", "Fluid").vanishes() || has_formula("Smoke") ||
+      has_formula("Temperature")) {
     const Point<dim> far = Point<dim>::Constant(1e300);
     asked_.push_back({Box<dim>(-far, far), only_at_start});
   }
   ask_for_sides(domain);
   if (fluid.isSublist("Free Surface"))
-    liquid_ = read_liquid<dim>(fluid, point_value<dim>(fluid, "Gravity"));
+    liquid_ = read_liquid<dim>(fluid, gravity_at_start<dim>(fluid));
 }
 
 template <int dim>
@@ -88,22 +93,22 @@ void MovingTiles<dim>::ask_for(const ParameterList& regions, double until) {
   });
 }
 
-/// Inflows, and walls that move.
+/// Inflows, walls that move, and open sides with a pressure.
 template <int dim>
 void MovingTiles<dim>::ask_for_sides(const DomainDescription<dim>& domain) {
   const GridDescription<dim>& grid = domain.grid;
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       const BoundarySide<dim>& side = domain.boundary.side(axis, end);
-      if (!side.moves())
+      if (!side.moves() && side.pressure.vanishes())
         continue;
       const double upper = grid.lower[axis] + grid.n_cells[axis] * grid.spacing;
       Point<dim> far = Point<dim>::Constant(1e300);
       Box<dim> region(-far, far);
       if (side.type == SideType::inflow)
-        region = region.intersection(side.shape.opening);
+        region = region.intersection(side.opening.box);
       region.min()[axis] = region.max()[axis] = end == 0 ? grid.lower[axis] : upper;
-      asked_.push_back({region, side.end_time});
+      asked_.push_back({region, for_ever});
     }
 }
 

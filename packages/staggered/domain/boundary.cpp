@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
+#include "parameters/formula.hpp"
 #include "staggered/domain/inflow_scalars.hpp"
 #include "staggered/domain/parameter_values.hpp"
 
@@ -28,25 +29,27 @@ template <int dim>
 BoundarySide<dim> read_side(const ParameterList& list, const Box<dim>& domain, int axis, int end) {
   BoundarySide<dim> side;
   side.type = side_type(list.get<std::string>("Type"));
-  side.velocity = point_value<dim>(list, "Velocity");
-  side.ramp_time = list.get<double>("Ramp Time");
-  if (list.isParameter("End"))
-    side.end_time = list.get<double>("End");
-  side.shape = read_inflow_shape<dim>(list, domain, axis, "Domain/Sides/" + side_name(axis, end));
+  const std::string where = "Domain/Sides/" + side_name(axis, end);
+  side.velocity = FieldFormula<dim>(list, "Velocity", where);
+  side.pressure = FieldFormula<dim>(list, "Pressure", where);
+  side.opening = read_inflow_opening<dim>(list, domain, axis, where);
   check_input(
-      !side.closed() || side.velocity[axis] == 0,
-      "In \"Domain/Sides/{}\", a wall cannot move along {} (velocity {} m/s): it would leave "
-      "the domain. Make it an inflow, or set that component to 0.",
-      side_name(axis, end), axis_names[axis], side.velocity[axis]);
+      !side.closed() ||
+          (side.velocity.is_number(axis) && side.velocity(axis, domain.min(), 0) == 0),
+      "In \"{}\", a wall cannot move along {}: it would leave the domain. Make it an inflow, or "
+      "set that component of \"Velocity\" to 0.",
+      where, axis_names[axis]);
   const auto check_meaning = [&](const char* parameter, bool given) {
     check_input(!given || side.type == SideType::wall || side.type == SideType::inflow,
                 "In \"Domain/Sides/{}\", \"{}\" has no meaning on a side of type \"{}\"; it is "
                 "for walls and inflows.",
                 side_name(axis, end), parameter, list.get<std::string>("Type"));
   };
-  check_meaning("Velocity", side.velocity != Point<dim>::Zero());
-  check_meaning("Ramp Time", side.ramp_time > 0);
-  check_meaning("End", list.isParameter("End"));
+  check_meaning("Velocity", !side.velocity.vanishes());
+  check_input(side.type == SideType::open || side.pressure.vanishes(),
+              "In \"{}\", \"Pressure\" has no meaning on a side of type \"{}\"; it is for open "
+              "sides.",
+              where, list.get<std::string>("Type"));
   return side;
 }
 
@@ -79,19 +82,78 @@ ParameterList domain_parameters() {
           declare_list(sides, side_name(a, end), "The side at the end of this axis.");
       declare_choice(side, "Type", "wall", side_types,
                      "wall: closed, the fluid sticks to it; slip wall: closed, no friction; open: "
-                     "pressure 0; inflow: given velocity; periodic: joined to the opposite side "
-                     "(both must be periodic).");
+                     "given pressure; inflow: given velocity; periodic: joined to the opposite "
+                     "side (both must be periodic).");
       declare_vector(side, "Velocity", filled_array(dim, 0.0), dim,
-                     "Velocity of the inflow, or of a wall along itself [m/s].");
-      declare_at_least(side, "Ramp Time", 0.0, 0.0,
-                       "Time during which \"Velocity\" grows linearly from 0 [s].");
-      declare_optional<double>(side, "End", "After it \"Velocity\" is 0 [s].");
-      declare_inflow_shape<dim>(side);
+                     "Velocity of the inflow, or of a wall along itself [m/s]; formulas of place "
+                     "[m] and time [s]: a ramp \"[min(t, 1)]\", a parabola \"[6*y*(1 - y)]\", a "
+                     "pulse \"[t < 1 ? 2 : 0]\".");
+      declare(side, "Pressure", 0.0,
+              "Pressure at an open side [Pa], or a formula of place [m] and time [s], such as that "
+              "of still water 2 m high, \"[1000*9.81*max(2 - y, 0)]\". Where it is not left at 0 "
+              "what comes in is like what is there: liquid beside liquid.");
+      for (const char* name : {"Velocity", "Pressure"})
+        set_variables(side, name, place_and_time(dim));
+      declare_inflow_opening<dim>(side);
       declare_inflow_wave(side);
-      declare_inflow_scalars(side);
+      declare_inflow_scalars<dim>(side);
     }
   return list;
 }
+
+template <int dim>
+Point<dim> BoundarySide<dim>::velocity_at(int axis, const Point<dim>& x, double time) const {
+  if (wave)
+    return wave->velocity_at(x, time);
+  if (type == SideType::inflow && !opening.contains(axis, x))
+    return Point<dim>::Zero();
+  return velocity.vector(x, time);
+}
+
+template <int dim>
+Point<dim> BoundarySide<dim>::mean_velocity(int axis, const Box<dim>& face, double time) const {
+  if (wave)
+    return wave->mean_velocity(face, time);
+  Box<dim> open = face;
+  double share = 1;
+  if (type == SideType::inflow)
+    share = opening.share(axis, face, open);
+  open.min()[axis] = open.max()[axis] = face.center()[axis];
+  Point<dim> mean = Point<dim>::Zero();
+  for (int a = 0; share > 0 && a < dim; ++a)
+    mean[a] = share * velocity.mean(a, open, time);
+  return mean;
+}
+
+template <int dim>
+bool BoundarySide<dim>::jumps(double begin, double end) const {
+  if (velocity.are_numbers())
+    return false;
+  constexpr int n_halves = 40;
+  const auto jumps_at = [&](const Point<dim>& x) {
+    double from = begin, to = end;
+    Point<dim> before = velocity.vector(x, from), after = velocity.vector(x, to);
+    const double change = (after - before).norm();
+    for (int i = 0; change > 0 && i < n_halves; ++i) {
+      const double middle = 0.5 * (from + to);
+      const Point<dim> between = velocity.vector(x, middle);
+      const bool is_first = (between - before).norm() > (after - between).norm();
+      (is_first ? to : from) = middle;
+      (is_first ? after : before) = between;
+    }
+    return change > 0 && (after - before).norm() > 0.5 * change;
+  };
+  // Where a velocity by formula is not zero is not known; points across the side tell.
+  bool jumps = false;
+  for (const double share : {0.21, 0.5, 0.83}) {
+    const Point<dim> x = opening.box.min() + share * opening.box.sizes();
+    jumps = jumps || jumps_at(x);
+  }
+  return jumps;
+}
+
+template struct BoundarySide<2>;
+template struct BoundarySide<3>;
 
 template <int dim>
 void set_grid_flags(const Boundary<dim>& boundary, GridDescription<dim>& grid) {

@@ -1,13 +1,12 @@
 #pragma once
-#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
 
 #include "base/types.hpp"
 #include "grid/tile_lattice.hpp"
-#include "parameters/parameter_list.hpp"
-#include "staggered/domain/inflow_shape.hpp"
+#include "parameters/field_formula.hpp"
+#include "staggered/domain/inflow_opening.hpp"
 #include "staggered/domain/inflow_wave.hpp"
 
 namespace lockstep {
@@ -15,7 +14,7 @@ namespace lockstep {
 enum class SideType {
   wall,       ///< closed, the fluid sticks to it
   slip_wall,  ///< closed, without friction
-  open,       ///< p = 0 at the face
+  open,       ///< given pressure at the face
   inflow,     ///< prescribed velocity
   periodic
 };
@@ -24,43 +23,29 @@ enum class SideType {
 template <int dim>
 struct BoundarySide {
   SideType type = SideType::wall;
-  Point<dim> velocity =
-      Point<dim>::Zero();   ///< velocity of the wall (tangential only) or the inflow [m/s]
-  double ramp_time = 0;     ///< the velocity grows linearly from 0 during this time [s]; 0: at once
-  double end_time = 1e300;  ///< after it the velocity is 0 [s]
-  InflowShape<dim> shape;
-  std::optional<InflowWave<dim>> wave;  ///< instead of `velocity`
-  double smoke = 0;                     ///< carried by the inflow [1]
-  double temperature = 0;               ///< carried by the inflow [K]
+  /// Velocity of the wall (tangential only) or the inflow [m/s].
+  FieldFormula<dim> velocity = FieldFormula<dim>(std::vector<double>(dim, 0.));
+  FieldFormula<dim> pressure =
+      FieldFormula<dim>(std::vector<double>{0.});  ///< of an open side [Pa]
+  InflowOpening<dim> opening;
+  std::optional<InflowWave<dim>> wave;                                   ///< instead of `velocity`
+  FieldFormula<dim> smoke = FieldFormula<dim>(std::vector<double>{0.});  ///< of the inflow [1]
+  FieldFormula<dim> temperature =
+      FieldFormula<dim>(std::vector<double>{0.});  ///< of the inflow [K]
 
   bool closed() const { return type == SideType::wall || type == SideType::slip_wall; }
   /// True if fluid may come in or leave at a given velocity, or a wall move.
-  bool moves() const { return wave || velocity != Point<dim>::Zero(); }
+  bool moves() const { return wave || !velocity.vanishes(); }
   bool prescribed() const { return closed() || type == SideType::inflow; }
-  /// The part of `velocity` at a time.
-  double ramp(double time) const {
-    if (time > end_time)
-      return 0;
-    return ramp_time > 0 && time < ramp_time ? std::max(time, 0.0) / ramp_time
-                                             : 1;  // time may be < 0
-  }
-  /// True if the velocity jumps in [begin, end); at `end_time` itself it has not jumped yet.
-  bool jumps(double begin, double end) const {
-    return velocity != Point<dim>::Zero() && begin <= end_time && end_time < end &&
-           ramp(end_time) > 0;
-  }
+  /// True if what comes in is air: liquid comes in where the side has a pressure.
+  bool lets_in_air() const { return type == SideType::open && pressure.vanishes(); }
+  /// True if the velocity jumps between two times: of halves of the time, one after the other, one
+  /// has most of the change. Local.
+  bool jumps(double begin, double end) const;
   /// At `x` on this side, which is normal to `axis`.
-  Point<dim> velocity_at(int axis, const Point<dim>& x, double time) const {
-    if (wave)
-      return wave->velocity_at(x, time, ramp(time));
-    return velocity * (ramp(time) * (type == SideType::inflow ? shape.factor(axis, x) : 1));
-  }
-  /// The mean over a face of this side.
-  Point<dim> mean_velocity(int axis, const Box<dim>& face, double time) const {
-    if (wave)
-      return wave->mean_velocity(face, time, ramp(time));
-    return velocity * (ramp(time) * (type == SideType::inflow ? shape.mean_factor(axis, face) : 1));
-  }
+  Point<dim> velocity_at(int axis, const Point<dim>& x, double time) const;
+  /// The mean over a face of this side, or over a box at it.
+  Point<dim> mean_velocity(int axis, const Box<dim>& face, double time) const;
 };
 
 /// The sides of the domain: [axis][0 lower, 1 upper].

@@ -1,14 +1,20 @@
 #include "staggered/domain/inflow_scalars.hpp"
 
 #include "base/errors.hpp"
+#include "parameters/formula.hpp"
 
 namespace lockstep {
 
+template <int dim>
 void declare_inflow_scalars(ParameterList& side) {
   declare_optional<double>(side, "Smoke",
-                           "Smoke density that an inflow carries [1]; default: the ambient one.");
+                           "Smoke density that an inflow carries [1], or a formula of place [m] "
+                           "and time [s]; default: the ambient one.");
   declare_optional<double>(side, "Temperature",
-                           "Temperature that an inflow carries [K]; default: the ambient one.");
+                           "Temperature that an inflow carries [K], or a formula of place [m] and "
+                           "time [s]; default: the ambient one.");
+  for (const char* name : {"Smoke", "Temperature"})
+    set_variables(side, name, place_and_time(dim));
 }
 
 template <int dim>
@@ -22,7 +28,8 @@ void read_inflow_scalars(const ParameterList& fluid, const ParameterList& domain
       const auto carried = [&](const std::string& scalar) {
         const bool in_fluid = fluid.isSublist(scalar);
         if (!list.isParameter(scalar))
-          return in_fluid ? fluid.sublist(scalar).get<double>("Ambient") : 0.;
+          return FieldFormula<dim>(
+              std::vector<double>{in_fluid ? fluid.sublist(scalar).get<double>("Ambient") : 0.});
         check_input(side.type == SideType::inflow,
                     "In \"Domain/Sides/{}\", \"{}\" has no meaning on a side of type \"{}\"; it is "
                     "for inflows.",
@@ -31,13 +38,15 @@ void read_inflow_scalars(const ParameterList& fluid, const ParameterList& domain
                     "In \"Domain/Sides/{}\", the inflow has a \"{}\", but the fluid carries none; "
                     "add the list \"Fluid/{}\", or leave it out.",
                     name, scalar, scalar);
-        return list.get<double>(scalar);
+        return FieldFormula<dim>(list, scalar, "Domain/Sides/" + name);
       };
       side.smoke = carried("Smoke");
       side.temperature = carried("Temperature");
     }
 }
 
+template void declare_inflow_scalars<2>(ParameterList&);
+template void declare_inflow_scalars<3>(ParameterList&);
 template void read_inflow_scalars<2>(const ParameterList&, const ParameterList&, Boundary<2>&);
 template void read_inflow_scalars<3>(const ParameterList&, const ParameterList&, Boundary<3>&);
 

@@ -4,6 +4,7 @@
 namespace lockstep {
 
 /// Declares what an inflow carries in the list of a side.
+template <int dim>
 void declare_inflow_scalars(ParameterList& side);
 
 /// Reads the scalars that inflows carry: as their sides say in a validated list "Domain", else the

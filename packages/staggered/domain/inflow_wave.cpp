@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "parameters/field_formula.hpp"
 #include "staggered/domain/parameter_values.hpp"
 
 namespace lockstep {
@@ -51,9 +52,8 @@ double wave_number(double frequency, double gravity, double depth) {
 }
 
 template <int dim>
-Point<dim> InflowWave<dim>::velocity(double along, double up_part, double time,
-                                     double share) const {
-  const double a = share * height / 2, omega = frequency();
+Point<dim> InflowWave<dim>::velocity(double along, double up_part, double time) const {
+  const double a = share(time) * height / 2, omega = frequency();
   const double mean_flow =
       a * a * gravity / (2 * speed());  // a wave's own, between crest and bottom
   const double inwards = a * omega * along * std::sin(omega * time) - mean_flow / depth;
@@ -61,26 +61,26 @@ Point<dim> InflowWave<dim>::velocity(double along, double up_part, double time,
 }
 
 template <int dim>
-Point<dim> InflowWave<dim>::velocity_at(const Point<dim>& x, double time, double share) const {
+Point<dim> InflowWave<dim>::velocity_at(const Point<dim>& x, double time) const {
   const Profile profile{number, depth};
   const double z = x.dot(up) - level;
-  return velocity(profile.cosh_part(z), profile.sinh_part(z), time, share);
+  return velocity(profile.cosh_part(z), profile.sinh_part(z), time);
 }
 
 template <int dim>
-Point<dim> InflowWave<dim>::mean_velocity(const Box<dim>& box, double time, double share) const {
+Point<dim> InflowWave<dim>::mean_velocity(const Box<dim>& box, double time) const {
   const Profile profile{number, depth};
   const double one = box.min().dot(up) - level, other = box.max().dot(up) - level;
   const double lower = std::min(one, other), upper = std::max(one, other);
   if (upper - lower <= 0)
-    return velocity_at(box.min(), time, share);
+    return velocity_at(box.min(), time);
   const auto c = [&](double z) { return profile.cosh_part(z); };
   const auto s = [&](double z) { return profile.sinh_part(z); };
   const auto integral_of_c = [&](double z) { return profile.sinh_part(z) / number; };
   const auto integral_of_s = [&](double z) { return profile.cosh_part(z) / number; };
   const double along = integral(c, integral_of_c, depth, lower, upper);
   const double up_part = integral(s, integral_of_s, depth, lower, upper);
-  return velocity(along / (upper - lower), up_part / (upper - lower), time, share);
+  return velocity(along / (upper - lower), up_part / (upper - lower), time);
 }
 
 void declare_inflow_wave(ParameterList& side) {
@@ -89,9 +89,11 @@ void declare_inflow_wave(ParameterList& side) {
       "An inflow sends a regular wave into a tank of liquid: at the side the water moves as below "
       "a wave of linear theory that goes inwards, less that wave's mean flow. The still water is "
       "the \"level\" in \"Liquid\", down to the side of the domain below it. It begins with a "
-      "crest, and grows during \"Ramp Time\".");
+      "crest.");
   declare_required_positive(wave, "Height", "From trough to crest [m].");
   declare_required_positive(wave, "Frequency", "Crests per second [1/s].");
+  declare_at_least(wave, "Ramp Time", 0.0, 0.0,
+                   "Time during which the height grows linearly from 0 [s].");
 }
 
 namespace {
@@ -110,6 +112,7 @@ int axis_along(const Point<dim>& gravity) {
 }
 
 /// Height of the still water: that of the one level among the fluid's liquids [m].
+template <int dim>
 double still_level(const ParameterList& fluid, const std::string& where) {
   const ParameterList& liquids = fluid.sublist("Free Surface").sublist("Liquid");
   std::optional<double> height;
@@ -118,7 +121,12 @@ double still_level(const ParameterList& fluid, const std::string& where) {
     const ParameterList& liquid = liquids.sublist(liquids.name(it));
     if (liquid.get<std::string>("Type") != "level")
       continue;
-    height = liquid.get<double>("Height");
+    const FieldFormula<dim> formula(liquid, "Height", "Fluid/Free Surface/Liquid");
+    check_input(formula.are_numbers(),
+                "In \"{}\", a \"Wave\" runs on still water, but the \"Height\" of \"{}\" in "
+                "\"Fluid/Free Surface/Liquid\" depends on the place; make it a number.",
+                where, liquids.name(it));
+    height = formula(0, Point<dim>::Zero(), 0);
     ++n_levels;
   }
   check_input(
@@ -155,22 +163,23 @@ std::optional<InflowWave<dim>> read_inflow_wave(const ParameterList& side,
               "In \"{}\", there is a \"Wave\", but the fluid has no surface; give \"Fluid\" the "
               "list \"Free Surface\", or leave the wave out.",
               where);
-  check_input(!side.isSublist("Opening") && side.get<std::string>("Profile") == "uniform" &&
-                  point_value<dim>(side, "Velocity").isZero(),
+  check_input(!side.isSublist("Opening") && FieldFormula<dim>(side, "Velocity", where).vanishes(),
               "In \"{}\", the \"Wave\" says how the water moves, at all of the side; leave "
-              "\"Velocity\", \"Profile\" and \"Opening\" out.",
+              "\"Velocity\" and \"Opening\" out.",
               where);
-  const Point<dim> gravity = point_value<dim>(fluid, "Gravity");
+  const bool is_steady = FieldFormula<dim>(fluid, "Gravity", where).are_numbers();
+  const Point<dim> gravity = gravity_at_start<dim>(fluid);
   const int vertical = axis_along<dim>(gravity);
-  check_input(vertical >= 0 && vertical != axis,
-              "In \"{}\", a \"Wave\" wants gravity along the side and along an axis, to know where "
-              "up is.",
+  check_input(is_steady && vertical >= 0 && vertical != axis,
+              "In \"{}\", a \"Wave\" wants gravity along the side and along an axis, the same "
+              "always, to know where up is.",
               where);
   const ParameterList& list = side.sublist("Wave");
   InflowWave<dim> wave;
   wave.height = list.get<double>("Height");
   wave.period = 1 / list.get<double>("Frequency");
-  wave.level = still_level(fluid, where);
+  wave.ramp_time = list.get<double>("Ramp Time");
+  wave.level = still_level<dim>(fluid, where);
   wave.gravity = gravity.norm();
   wave.up = -gravity.normalized();
   wave.inward = Point<dim>::Unit(axis) * (end == 0 ? 1 : -1);

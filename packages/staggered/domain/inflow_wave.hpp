@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -20,20 +21,25 @@ struct InflowWave {
   Point<dim> up = Point<dim>::Zero();  ///< against gravity; along an axis
   Point<dim> inward = Point<dim>::Zero();  ///< normal of the side
   double number = 0;                       ///< k, of omega^2 = g k tanh(k depth) [1/m]
+  double ramp_time = 0;  ///< the height grows linearly from 0 during this time [s]; 0: at once
 
   double frequency() const { return 2 * M_PI / period; }  ///< omega [1/s]
   double speed() const { return frequency() / number; }   ///< speed of a crest [m/s]
 
-  /// Velocity at a point of the side [m/s]; `share` of the height has grown. Above the still water
-  /// it is that at its level.
-  Point<dim> velocity_at(const Point<dim>& x, double time, double share) const;
+  /// The part of the height that has grown.
+  double share(double time) const {
+    return ramp_time > 0 ? std::clamp(time / ramp_time, 0.0, 1.0) : 1;
+  }
+
+  /// Velocity at a point of the side [m/s]. Above the still water it is that at its level.
+  Point<dim> velocity_at(const Point<dim>& x, double time) const;
   /// The mean over a box that reaches over some height.
-  Point<dim> mean_velocity(const Box<dim>& box, double time, double share) const;
+  Point<dim> mean_velocity(const Box<dim>& box, double time) const;
 
  private:
   /// Velocity from cosh(k (z + depth)) / sinh(k depth) along the side and the same with sinh
   /// upwards [m/s].
-  Point<dim> velocity(double along, double up_part, double time, double share) const;
+  Point<dim> velocity(double along, double up_part, double time) const;
 };
 
 /// k > 0 of omega^2 = g k tanh(k depth) [1/m].

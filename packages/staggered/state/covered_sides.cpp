@@ -22,6 +22,7 @@ ControlVolume<dim> volume_at_side(const MacDomain<dim>& domain, const MacGeometr
   volume.sides[end].kind = SideKind::closed;
   volume.sides[1 - end].kind = SideKind::unknown;
   volume.sides[1 - end].unknown = geometry.unknown[cell];
+  volume.sides[1 - end].cell = domain.grid.global_id(cell);
   volume.sides[1 - end].center = inner;
   volume.sides[end].center = volume.center;
   Point<dim> across = Point<dim>::Constant(half);

@@ -4,17 +4,18 @@ namespace lockstep {
 
 namespace {
 template <int dim>
-PressureSide<dim> pressure_side(const MacGeometry<dim>& geometry, int cell,
-                                const Point<dim>& center, double spacing) {
+PressureSide<dim> pressure_side(const TiledGrid<dim>& grid, const MacGeometry<dim>& geometry,
+                                int cell, const Point<dim>& center) {
   PressureSide<dim> side;
   side.center = center;
   if (cell < 0)
     return side;
+  side.cell = grid.global_id(cell);
   side.unknown = geometry.unknown[cell];
   side.kind = SideKind::unknown;
   if (geometry.state.cells[cell] == CellState::solid) {
     side.kind = SideKind::solid;
-    side.solid = solid_of_cell(*geometry.state.surface, center, spacing);
+    side.solid = solid_of_cell(*geometry.state.surface, center, grid.spacing());
   } else if (geometry.state.cells[cell] == CellState::air) {
     side.kind = SideKind::air;
     side.bubble = geometry.bubble.empty() ? -1 : geometry.bubble[cell];
@@ -80,8 +81,8 @@ ControlVolume<dim> control_volume(const MacDomain<dim>& domain, const MacGeometr
   const Point<dim> step = Point<dim>::Unit(axis) * half;
   const Point<dim> lower = face.lower < 0 ? volume.center : Point<dim>(volume.center - step);
   const Point<dim> upper = face.upper < 0 ? volume.center : Point<dim>(volume.center + step);
-  volume.sides = {pressure_side(geometry, face.lower, lower, grid.spacing()),
-                  pressure_side(geometry, face.upper, upper, grid.spacing())};
+  volume.sides = {pressure_side(grid, geometry, face.lower, lower),
+                  pressure_side(grid, geometry, face.upper, upper)};
   Point<dim> across = Point<dim>::Constant(half);
   across[axis] = 0;
   volume.box = Box<dim>(lower - across, upper + across);

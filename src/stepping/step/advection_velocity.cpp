@@ -14,18 +14,17 @@ AdvectionReport AdvectionVelocity<dim>::make(const StepTime& step, const std::st
   const bool has_no_divergence = fluid.begin_advection_velocity(step.dt);
   if (components_.solids->empty() && is_projected && has_no_divergence)
     return {};
-  const std::vector<double> effective = coupling.effective_velocity(*components_.solids);
-  fluid.set_coupled_velocity(effective);
+  fluid.set_coupled_velocity(coupling.effective_velocity(*components_.solids));
   CoupledSolution solution;
   solution.rhs.pressure = make_vector(fluid.pressure_map());
   fluid.divergence(*solution.rhs.pressure);
-  coupling.add_divergence(effective, *solution.rhs.pressure);
+  coupling.add_effective_divergence(*components_.solids, *solution.rhs.pressure);
   const BlockSystem& blocks = system_.blocks(0, false);
   const double incompatibility = relative_part_removed(blocks.null_space, *solution.rhs.pressure);
   solution.unknowns.pressure = make_vector(fluid.pressure_map());
   components_.strategy->prepare(blocks);
-  gas_.solve_advection(step.dt, effective, blocks,
-                       solve_request(fluid, name, tolerance_, step, step.dt), solution);
+  gas_.solve_advection(step.dt, blocks, solve_request(fluid, name, tolerance_, step, step.dt),
+                       solution);
   gas_.project(*solution.unknowns.pressure, solution.gas_pressure);
   return {solution.report, incompatibility};
 }

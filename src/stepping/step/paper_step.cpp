@@ -52,6 +52,7 @@ StepContext<dim> PaperStep<dim>::velocities(const StepTime& step,
 template <int dim>
 bool PaperStep<dim>::begin(const StepTime& step) {
   const bool has_moved = transport_.make_room(step);
+  components_.solids->set_gravity(components_.fluid->gravity());
   if (components_.solids->begin_step(step.begin, step.dt)) {  // other dofs are unknowns now
     transport_.freeze();
     audit_.start(step.begin);

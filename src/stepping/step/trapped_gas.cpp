@@ -102,8 +102,7 @@ void TrappedGas<dim>::solve(const StepContext<dim>& context, const BlockSystem& 
       if (!constraints.is_identity())
         is_change ? constraints.expand_change(velocity) : constraints.expand(velocity);
     }
-    std::vector<double> rates =
-        coupling_->gas_rates(coupling_->closed_velocity(velocity, !is_change), n);
+    std::vector<double> rates = coupling_->gas_rates(velocity, !is_change, n);
     const std::vector<double> answer = fluid_->gas_answer(*unknowns.pressure);
     const std::vector<double> before = is_change ? std::vector<double>(n, 0) : fluid_->gas_rates();
     for (int k = 0; k < n; ++k)
@@ -153,8 +152,8 @@ void TrappedGas<dim>::check_volumes(const StepContext<dim>& context, const GasPr
 }
 
 template <int dim>
-void TrappedGas<dim>::solve_advection(double dt, const std::vector<double>& effective,
-                                      const BlockSystem& blocks, const SolveRequest& request,
+void TrappedGas<dim>::solve_advection(double dt, const BlockSystem& blocks,
+                                      const SolveRequest& request,
                                       CoupledSolution& solution) const {
   if (!is_there()) {
     solution.report = components_.strategy->solve(blocks, solution.rhs, solution.unknowns, request);
@@ -172,7 +171,8 @@ void TrappedGas<dim>::solve_advection(double dt, const std::vector<double>& effe
     std::vector<double> rates = fluid_->gas_answer(*unknowns.pressure);
     const std::vector<double> none(n, 0);
     const std::vector<double> before = is_change ? none : fluid_->gas_rates();
-    const std::vector<double> solids = is_change ? none : coupling_->gas_rates(effective, n);
+    const std::vector<double> solids =
+        is_change ? none : coupling_->effective_gas_rates(*components_.solids, n);
     for (int k = 0; k < n; ++k)
       rates[k] = before[k] + solids[k] - rates[k];
     return rates;

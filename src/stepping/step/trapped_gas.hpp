@@ -21,11 +21,11 @@ class TrappedGas {
   /// its unknowns on. Collective.
   void solve(const StepContext<dim>& context, const BlockSystem& blocks,
              const SolveRequest& request, CoupledSolution& solution) const;
-  /// Solves for u_ADV, as `solve`, with solids at their `effective` velocities at coupled volumes.
+  /// Solves for u_ADV, as `solve`, with solids at their effective velocities.
   /// Bubbles that keep their volume do so in u_ADV, too; others have the solids change it by no
   /// more than the next solve answers. Collective.
-  void solve_advection(double dt, const std::vector<double>& effective, const BlockSystem& blocks,
-                       const SolveRequest& request, CoupledSolution& solution) const;
+  void solve_advection(double dt, const BlockSystem& blocks, const SolveRequest& request,
+                       CoupledSolution& solution) const;
 
  private:
   /// Throws InputError in the first step, SolveError later, if the solution changes a bubble that

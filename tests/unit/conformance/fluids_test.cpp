@@ -22,9 +22,7 @@ std::unique_ptr<MacFluid<dim>> moving_fluid(double viscosity, bool open) {
   scene.fluid.set("Density", 3.0);
   scene.fluid.set("Viscosity", viscosity);
   scene.fluid.set("Gravity", dim == 2 ? numbers({0.3, -2}) : numbers({0.3, 0, -2}));
-  ParameterList& start = scene.fluid.sublist("Initial State");
-  start.set("Type", "uniform");
-  start.set("Velocity", dim == 2 ? numbers({0.3, 0.2}) : numbers({0.3, 0.2, -0.1}));
+  scene.fluid.set("Velocity", dim == 2 ? numbers({0.3, 0.2}) : numbers({0.3, 0.2, -0.1}));
   if (open)
     scene.side(dim == 2 ? "y upper" : "z upper", "open");
   return scene.make();
@@ -72,11 +70,15 @@ template <int dim>
 void expect_couplings_to_keep_theirs() {
   FakeBody<dim> prescribed = ball<dim>(0.8);
   prescribed.kind = FakeBody<dim>::Kind::prescribed;
-  for (const bool with_prescribed : {false, true}) {
-    std::vector<FakeBody<dim>> bodies{ball<dim>(0.33)};
+  FakeBody<dim> soft = ball<dim>(0.33);
+  soft.kind = FakeBody<dim>::Kind::nodal;
+  for (const auto& [body, with_prescribed] :
+       {std::pair{ball<dim>(0.33), false}, std::pair{ball<dim>(0.33), true}, std::pair{soft, false},
+        std::pair{soft, true}}) {
+    std::vector<FakeBody<dim>> bodies{body};
     if (with_prescribed)
       bodies.push_back(prescribed);
-    const SolidSystem<dim> solids(fake_solids<dim>({bodies}), Tpetra::getDefaultComm());
+    SolidSystem<dim> solids(fake_solids<dim>({bodies}), Tpetra::getDefaultComm());
     const auto fluid = moving_fluid<dim>(0, true);
     MixedFaceCoupling<dim> mixed(MixedFaceOptions{});
     FluxCoupling<dim> flux(FluxOptions{});

@@ -171,7 +171,8 @@ TEST(Fluid, AVortexAtRestInTheMeanStaysOneInAStep) {
   Case<2> scene({32, 32}, 1.0 / 32);
   scene.all_periodic();
   scene.fluid.set("Density", 1.0);
-  scene.fluid.sublist("Initial State").set("Type", "taylor green");
+  scene.fluid.set("Velocity",
+                  formulas({"sin(2*_pi*x)*cos(2*_pi*y)", "-cos(2*_pi*x)*sin(2*_pi*y)"}));
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
   fluid->begin_prediction();
@@ -197,7 +198,8 @@ TEST(Fluid, AChannelFillsFromTheInflow) {
   scene.side("x lower", "inflow", Point<3>(1, 0, 0)).side("x upper", "open");
   for (const char* const side : {"y lower", "y upper", "z lower", "z upper"})
     scene.side(side, "slip wall");
-  scene.domain.sublist("Sides").sublist("x lower").set("Ramp Time", 1.0);
+  scene.domain.sublist("Sides").sublist("x lower").set("Velocity",
+                                                       formulas({"min(t, 1)", "0", "0"}));
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<3>());
   for (const double end : {0.5, 2.0}) {
@@ -217,7 +219,7 @@ TEST(Fluid, AJetEntersThroughItsOpeningUntilItEnds) {
   scene.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
   scene.side("y lower", "slip wall").side("y upper", "slip wall");
   ParameterList& jet = scene.domain.sublist("Sides").sublist("x lower");
-  jet.set("Profile", "parabolic").set("End", 1.0);
+  jet.set("Velocity", formulas({"t > 1 ? 0 : 6*(y - 0.25)*(0.75 - y)/0.25", "0"}));
   jet.sublist("Opening").set("Lower", numbers({0.0, 0.25})).set("Upper", numbers({0.0, 0.75}));
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
@@ -238,7 +240,8 @@ TEST(Fluid, TheFlowThatCarriesFollowsRampsAndNoJumps) {
   Case<2> scene({16, 8}, 0.125);
   scene.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
   scene.side("y lower", "slip wall").side("y upper", "slip wall");
-  scene.domain.sublist("Sides").sublist("x lower").set("Ramp Time", 10.0).set("End", 1.0);
+  scene.domain.sublist("Sides").sublist("x lower").set("Velocity",
+                                                       formulas({"t > 1 ? 0 : t/10", "0"}));
   scene.fluid.set("Order in Time", 2);
   const auto fluid = scene.make();
   fluid->set_geometry(nullptr, BlockedFaces<2>());
@@ -265,25 +268,28 @@ TEST(Fluid, TheFlowThatCarriesFollowsRampsAndNoJumps) {
   }
 }
 
-/// A scene may start before time 0.
-TEST(Fluid, SidesRampUpFromTimeZeroIfAtAll) {
-  BoundarySide<2> side;
-  side.velocity = Point<2>(3, 0);
-  const Point<2> x(0.5, 0);
-  for (const double time : {-1., 0., 1.})
-    EXPECT_EQ(side.velocity_at(1, x, time), side.velocity) << time;
-  side.ramp_time = 2;
-  EXPECT_EQ(side.velocity_at(1, x, -1), Point<2>(0, 0));
-  EXPECT_EQ(side.velocity_at(1, x, 0), Point<2>(0, 0));
-  EXPECT_EQ(side.velocity_at(1, x, 1), Point<2>(1.5, 0));
-  EXPECT_EQ(side.velocity_at(1, x, 2), side.velocity);
+TEST(Fluid, SidesKnowWhenTheirVelocityJumps) {
+  const auto side = [](const std::string& velocity) {
+    Case<2> scene({16, 8}, 0.125);
+    scene.side("x lower", "inflow").side("x upper", "open");
+    scene.domain.sublist("Sides").sublist("x lower").set("Velocity", formulas({velocity, "0"}));
+    validate(scene.domain, domain_parameters<2>(), Source{"test", {}}, "Domain");
+    return read_domain<2>(scene.domain).boundary.side(0, 0);
+  };
+  EXPECT_TRUE(side("t > 0.7 ? 1 : 0").jumps(0.65, 0.75));
+  EXPECT_FALSE(side("t > 0.7 ? 1 : 0").jumps(0.6, 0.7));  // not yet at that time itself
+  EXPECT_TRUE(side("t > 0.7 ? y : t*y").jumps(0.65, 0.75));
+  EXPECT_FALSE(side("min(t, 0.7)*y").jumps(0.65, 0.75));
+  EXPECT_FALSE(side("sin(100*t)").jumps(0.65, 0.75));
+  EXPECT_FALSE(side("2").jumps(0.65, 0.75));
 }
 
 TEST(Fluid, TellsHowFastItsWallsAre) {
   Case<2> scene({16, 8}, 0.125);
   scene.side("x lower", "inflow", Point<2>(1, 0)).side("x upper", "open");
   scene.side("y lower", "wall", Point<2>(3, 0)).side("y upper", "slip wall");
-  scene.domain.sublist("Sides").sublist("y lower").set("Ramp Time", 2.0).set("End", 4.0);
+  scene.domain.sublist("Sides").sublist("y lower").set(
+      "Velocity", formulas({"t > 4 ? 0 : 3*min(t/2, 1)", "0"}));
   const auto fluid = scene.make();
   EXPECT_EQ(fluid->wall_velocity(1, 0, 1), Point<2>(1.5, 0));
   EXPECT_EQ(fluid->wall_velocity(1, 0, 4), Point<2>(3, 0));
@@ -299,7 +305,10 @@ TEST(Fluid, AnOpeningThatEndsWithinFacesLetsInWhatWasAskedFor) {
       Case<2> scene({16, 8}, 0.125);
       scene.side("x lower", "inflow", Point<2>(2, 0)).side("x upper", "open");
       ParameterList& jet = scene.domain.sublist("Sides").sublist("x lower");
-      jet.set("Profile", profile);
+      const std::string to = std::to_string(upper);
+      if (profile == std::string("parabolic"))
+        jet.set("Velocity",
+                formulas({"12*(y - 0.28)*(" + to + " - y)/(" + to + " - 0.28)^2", "0"}));
       jet.sublist("Opening").set("Lower", numbers({0.0, 0.28})).set("Upper", numbers({0.0, upper}));
       const auto fluid = scene.make();
       fluid->set_geometry(nullptr, BlockedFaces<2>());

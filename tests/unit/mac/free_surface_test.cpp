@@ -236,8 +236,9 @@ std::unique_ptr<MacFluid<2>> ball_in_a_vortex(const std::string& force, double s
   Case<2> scene({20, 20}, 0.05);
   scene.fluid.set(force, numbers({0.6, -0.8}));
   scene.fluid.sublist("Free Surface").sublist("Interface").set("Type", "listener");
-  scene.fluid.sublist("Initial State").set("Type", "taylor green").set("Wavelength", 0.25);
-  scene.fluid.sublist("Initial State").set("Amplitude", speed);
+  const std::string u = std::to_string(speed);
+  scene.fluid.set("Velocity", formulas({u + "*sin(8*_pi*x)*cos(8*_pi*y)",
+                                        "-" + u + "*cos(8*_pi*x)*sin(8*_pi*y)"}));
   add_ball<2>(scene, {0.48, 0.52}, 0.3);
   validate(scene.fluid, mac_parameters<2>(&interfaces), Source{"test", {}}, "Fluid");
   validate(scene.domain, domain_parameters<2>(), Source{"test", {}}, "Domain");

@@ -36,7 +36,7 @@ double mean_flow(const InflowWave<2>& w) {
     const double t = (i + 0.5) / n * w.period;
     const double surface = w.level + w.height / 2 * std::sin(w.frequency() * t);
     const Box<2> below(Point<2>(0, -0.2), Point<2>(0, surface));
-    sum += w.mean_velocity(below, t, 1)[0] * (surface + 0.2) / n;
+    sum += w.mean_velocity(below, t)[0] * (surface + 0.2) / n;
   }
   return sum;
 }
@@ -59,25 +59,35 @@ TEST(InflowWave, MovesAsBelowAWave) {
   const double back = a * a * g / (2 * w.speed()) / 0.5;
   for (const double t : {0., 0.1, 0.33}) {
     for (const double y : {-0.2, 0., 0.3}) {
-      const Point<2> v = w.velocity_at({0, y}, t, 1);
+      const Point<2> v = w.velocity_at({0, y}, t);
       const double scale = a * omega / std::sinh(k * 0.5);
       EXPECT_NEAR(v[0], scale * std::cosh(k * (y + 0.2)) * std::sin(omega * t) - back, 1e-13);
       EXPECT_NEAR(v[1], scale * std::sinh(k * (y + 0.2)) * std::cos(omega * t), 1e-13);
     }
-    EXPECT_EQ(w.velocity_at({0, 0.4}, t, 1), w.velocity_at({0, 0.3}, t, 1));
-    EXPECT_EQ(w.velocity_at({0, 0.2}, t, 0), Point<2>(0, 0));
+    EXPECT_EQ(w.velocity_at({0, 0.4}, t), w.velocity_at({0, 0.3}, t));
   }
 }
 
+TEST(InflowWave, GrowsFromNothing) {
+  InflowWave<2> w = wave(0.02);
+  w.ramp_time = 2;
+  for (const double t : {-1., 0.})
+    EXPECT_EQ(w.velocity_at({0, 0.2}, t), Point<2>(0, 0));
+  const Point<2> grown = w.velocity_at({0, 0.2}, 2.5);
+  w.ramp_time = 0;
+  EXPECT_EQ(w.velocity_at({0, 0.2}, 2.5), grown);
+}
+
 TEST(InflowWave, MeansOverFacesAreIntegrals) {
-  const InflowWave<2> w = wave(0.02);
+  InflowWave<2> w = wave(0.02);
+  w.ramp_time = 0.1 / 0.7;
   for (const auto& [lower, upper] :
        {std::pair{-0.2, -0.1}, {0.1, 0.25}, {0.25, 0.35}, {0.31, 0.4}, {-0.3, 0.4}}) {
     constexpr int n = 2000;
     Point<2> sum(0, 0);
     for (int i = 0; i < n; ++i)
-      sum += w.velocity_at({0, lower + (upper - lower) * (i + 0.5) / n}, 0.1, 0.7) / n;
-    const Point<2> mean = w.mean_velocity({Point<2>(0, lower), Point<2>(0, upper)}, 0.1, 0.7);
+      sum += w.velocity_at({0, lower + (upper - lower) * (i + 0.5) / n}, 0.1) / n;
+    const Point<2> mean = w.mean_velocity({Point<2>(0, lower), Point<2>(0, upper)}, 0.1);
     EXPECT_LT((mean - sum).norm(), 1e-7) << lower << " to " << upper;
   }
 }
@@ -93,8 +103,8 @@ TEST(InflowWave, GoesInwardsFromEitherSide) {
     Case<2> scene({16, 16}, 0.0625);
     ParameterList& side =
         scene.side(side_name(0, end), "inflow").domain.sublist("Sides").sublist(side_name(0, end));
-    side.set("Ramp Time", 2.0);
     ParameterList& list = side.sublist("Wave");
+    list.set("Ramp Time", 2.0);
     list.set("Height", 0.02);
     list.set("Frequency", 1.25);
     scene.fluid.set("Gravity", numbers({0, -g}));

@@ -13,6 +13,10 @@
 
 namespace lockstep::test {
 
+/// Formulas in place of the numbers of a vector.
+inline ParameterArray<std::string> formulas(std::initializer_list<std::string> values) {
+  return std::vector<std::string>(values);
+}
 inline ParameterArray<double> numbers(std::initializer_list<double> values) {
   return ParameterArray<double>(values.begin(), values.end());
 }

@@ -47,18 +47,13 @@ TEST(RigidInput, OwnCentreAndInertia) {
 
 TEST(RigidInput, Loads) {
   const std::string ball = disc + number("Mass", "1");
-  const auto load = [](const std::string& type, const std::string& content) {
-    return list("Load", text("Type", type) + content);
-  };
-  const std::string push = load("formula", texts("Forces", "2*x, sin(t)"));
+  const std::string push = texts("Force", "2*x, sin(t)");
   EXPECT_EQ(error<2>(ball + push), "no error");
-  EXPECT_THAT(error<2>(ball + push + numbers("Force", "1, 0")), HasSubstr("leave these out"));
   EXPECT_THAT(error<2>(disc + motion("static") + push), HasSubstr("cannot move it"));
-  EXPECT_THAT(error<2>(ball + load("formula", "")), HasSubstr("push nothing"));
-  EXPECT_THAT(error<2>(ball + load("formula", texts("Forces", "z, 0"))),
-              HasSubstr("body/Load/Forces: cannot evaluate \"z\""));
-  EXPECT_THAT(error<2>(ball + load("table", numbers("Times", "0, 1") + numbers("Forces", "1, 2"))),
-              HasSubstr("has 2 numbers, but 2 times need 4"));
+  EXPECT_THAT(error<2>(ball + texts("Force", "z, 0")), HasSubstr("cannot evaluate \"z\""));
+  EXPECT_THAT(error<2>(ball + texts("Force", "table(t, 0, 1), 0")),
+              HasSubstr("wants a value for each of two or more times"));
+  EXPECT_THAT(error<2>(ball + texts("Force", "1")), HasSubstr("has 1 component"));
 }
 
 TEST(RigidInput, Geometry) {

@@ -115,10 +115,6 @@ TEST(RigidBodies, ConstantLoadsActAtTheCentreOfMass) {
   EXPECT_NEAR(each[0].angular(0), impulse.angular(0), 1e-12);
 }
 
-std::string load(const std::string& type, const std::string& content) {
-  return list("Load", text("Type", type) + content);
-}
-
 /// Steps of one disc of mass 1 and inertia 1 without fluid; by step its place and velocity.
 std::vector<std::pair<double, double>> path_of(const std::string& load_list, double dt,
                                                int n_steps) {
@@ -141,8 +137,7 @@ std::vector<std::pair<double, double>> path_of(const std::string& load_list, dou
 TEST(RigidBodies, ALoadThatGrowsLinearlyMovesABodyExactly) {
   // x = 1 + t^3 / 3, v = t^2 under a force of 2 t.
   for (const std::string& ramp :
-       {load("table", numbers("Times", "0, 1") + numbers("Forces", "0, 0, 2, 0")),
-        load("formula", texts("Forces", "2*t, 0"))}) {
+       {texts("Force", "table(t, 0, 0, 1, 2), 0"), texts("Force", "2*t, 0")}) {
     const auto path = path_of(ramp, 0.1, 10);
     EXPECT_NEAR(path.back().first, 1 + 1. / 3, 1e-14);
     EXPECT_NEAR(path.back().second, 1, 1e-14);
@@ -152,8 +147,7 @@ TEST(RigidBodies, ALoadThatGrowsLinearlyMovesABodyExactly) {
 TEST(RigidBodies, AForceByFormulaIsASpringOfSecondOrder) {
   // x = cos 2 t; ten periods. Each step keeps x^2 + (1 - dt^2) v^2 / 4, or gains nothing.
   const auto error = [](int n_steps) {
-    const auto path =
-        path_of(load("formula", texts("Forces", "-4*x, 0")), 10 * pi / n_steps, n_steps);
+    const auto path = path_of(texts("Force", "-4*x, 0"), 10 * pi / n_steps, n_steps);
     double largest = 0;
     for (const auto& [x, v] : path)
       largest = std::max(largest, std::abs(x));
@@ -168,7 +162,7 @@ TEST(RigidBodies, AForceByFormulaIsASpringOfSecondOrder) {
 
 TEST(RigidBodies, ATorqueByFormulaTurnsABody) {
   const auto bodies = model<2>({small_ball + number("Mass", "1") + numbers("Position", "3, 1") +
-                                load("formula", texts("Torques", "x + 10*y + 100*t"))});
+                                text("Torque", "x + 10*y + 100*t")});
   const auto impulse = bodies->external_impulse(0.5, 0.3);  // before the body moves: at .5 + .2 s
   EXPECT_NEAR(impulse.angular(0), 0.3 * (13 + 70), 1e-12);
   EXPECT_EQ(impulse.linear, Point<2>(0, 0));

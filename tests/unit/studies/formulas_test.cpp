@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "base/errors.hpp"
 #include "parameters/expression.hpp"
 #include "studies/run_results.hpp"
@@ -21,6 +23,25 @@ TEST(Formulas, BracketsBecomeNumbers) {
   EXPECT_EQ(substitute("Solids/Ball/Density=[1000*r]", variables, "test"),
             "Solids/Ball/Density=0.001");
   EXPECT_THROW(substitute("Fluid/Density=[n", variables, "test"), InputError);
+}
+
+TEST(Formulas, BracketsWithWhatIsFreeKeepTheRest) {
+  const Variables variables{{"U", -2}, {"t0", 1e-3}};
+  const std::vector<std::string> free{"x", "t"};
+  EXPECT_EQ(substitute("{[1e-3*U*x + exp(t0*t)], [2*U]}", variables, "test", free),
+            "{[1e-3*(-2)*x + exp(0.001*t)], -4}");
+  EXPECT_EQ(substitute("[x]", {{"x", 3}}, "test", free), "3");
+  EXPECT_EQ(names_in("1e-3*U + .5e2 - f(x_1)"), (std::vector<std::string>{"U", "f", "x_1"}));
+}
+
+TEST(Formulas, ATableIsAPolygon) {
+  const auto table = [](double t) {
+    return evaluate("table(t, 1, 2, 3, 6, 4, 0)", {{"t", t}}, "test");
+  };
+  for (const auto& [t, value] : std::map<double, double>{{0, 2}, {1, 2}, {2, 4}, {3.5, 3}, {9, 0}})
+    EXPECT_EQ(table(t), value) << t;
+  EXPECT_THROW(evaluate("table(1, 2, 3)", {}, "test"), InputError);
+  EXPECT_THROW(evaluate("table(1, 2, 3, 2, 4)", {}, "test"), InputError);
 }
 
 TEST(Formulas, MistakesAreNamed) {

@@ -35,6 +35,12 @@ void expect_constant(bool periodic, double cfl) {
   }
 }
 
+/// The same all over each side.
+SideValues<2> side_values(double x_lower, double x_upper, double y_lower, double y_upper) {
+  const auto all_over = [](double value) { return [value](const Point<2>&) { return value; }; };
+  return {{{all_over(x_lower), all_over(x_upper)}, {all_over(y_lower), all_over(y_upper)}}};
+}
+
 TEST(Transport, KeepsConstantsExactly) {
   for (const double cfl : {0.7, 5.0, 50.0}) {
     expect_constant<2>(true, cfl);
@@ -217,7 +223,7 @@ TEST(Transport, InflowEntersAndLeavesThroughTheOpenSide) {
   CellField s = tank.cells([](const Point<2>&) { return 0; }), next;
   FaceField<2> u = tank.velocity, u_next;
   Transport<2> transport(tank.setting(1.0 / 16));
-  const SideValues<2> inflow_values = {{{3, -1}, {-1, -1}}};
+  const SideValues<2> inflow_values = side_values(3, -1, -1, -1);
   for (int step = 1; step <= 4; ++step) {
     transport.advect_scalar(AdvectionScheme::semi_lagrangian, s, inflow_values, next);
     s.swap(next);
@@ -242,7 +248,7 @@ TEST(Transport, SlowInflowEnters) {
     FaceField<2> u = tank.velocity, u_next;
     Transport<2> transport(tank.setting(0.25 / 16));
     for (int step = 0; step < 40; ++step) {
-      transport.advect_scalar(scheme, s, {{{3, -1}, {-1, -1}}}, next);
+      transport.advect_scalar(scheme, s, side_values(3, -1, -1, -1), next);
       s.swap(next);
       transport.advect_faces(scheme, u, u_next);
       u.swap(u_next);
