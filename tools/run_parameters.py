@@ -32,7 +32,7 @@ def numbers(text):
 
 
 def leading_number(formula):
-    """Of "-9.81*(1 + sin(t))" the -9.81; 0 if it begins with none."""
+    """The number that a formula begins with, -9.81 of "-9.81*(1 + sin(t))"; 0 if there is none."""
     number = re.match(r"[\s(]*(-?[\d.]+(?:[eE][-+]?\d+)?)", formula)
     return float(number[1]) if number else 0.
 

@@ -135,7 +135,7 @@ class Setter {
     document_.source.places[join_path(path_, name)] = place_;
   }
 
-  /// What cannot be read as numbers may be formulas, in brackets or not.
+  /// Reads numbers, or else formulas, in brackets or not.
   ParameterEntry parse_like(const ParameterEntry& declared) const {
     const ValueType type = final_type(declared);
     try {

@@ -41,11 +41,18 @@ class WrittenScenes(unittest.TestCase):
         return result.stdout
 
     def test_scene(self):
-        box, body, constants, many, like_another, preset, view = blocks("write-a-scene.md")
+        box, body, constants, formulas, many, like_another, preset, view = blocks("write-a-scene.md")
         numbers = constants[: constants.index("  ...")]
         self.assertIn("valid", self.run_program(SIMULATE, self.write("box.xml", box), "--validate"))
         self.run_program(SIMULATE, self.write("body.xml", with_lists(box, body, view)), "--validate")
         self.run_program(SIMULATE, self.write("many.xml", with_lists(box, numbers, many)), "--steps", "1", "--output", "many")
+        velocity, height, force = formulas.splitlines()
+        pool = (f'<ParameterList name="Free Surface"><ParameterList name="Liquid"><ParameterList name="Pool"><Parameter name="Type" type="string" value="level"/>'
+                f"{height}</ParameterList></ParameterList></ParameterList>")
+        named = '<ParameterList name="Constants"><Parameter name="U" type="double" value="1"/><Parameter name="k" type="double" value="3"/></ParameterList>'
+        of_place = with_lists(box, named, body).replace('<ParameterList name="Fluid">', '<ParameterList name="Fluid">' + velocity + pool)
+        of_place = of_place.replace('<Parameter name="Position"', force + '<Parameter name="Position"')
+        self.run_program(SIMULATE, self.write("formulas.xml", of_place), "--validate")
         bodies = (Path(self.folder.name) / "many" / "bodies.csv").read_text()
         self.assertIn("Ball 20", bodies)
         scene = str(ROOT / "xml-params" / "scenes" / "buoyant-spheres.xml")

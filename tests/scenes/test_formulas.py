@@ -135,7 +135,7 @@ class Sides(unittest.TestCase):
     def test_stokes_second_problem(self):
         coarse, fine = self.stokes_layer(2, 16), self.stokes_layer(2, 32)
         self.assertLess(fine, .03)
-        self.assertGreater(coarse / fine, 1.8)  # of first order in the step
+        self.assertGreater(coarse / fine, 1.8)  # errors of first order in the step
         self.assertLess(self.stokes_layer(3, 16), 1.1 * coarse)
 
     def test_a_pressure_that_grows_speeds_fluid_up(self):

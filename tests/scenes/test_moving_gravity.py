@@ -56,9 +56,9 @@ class MovingGravity(unittest.TestCase):
                         body["Geometry"]["Mesh Spacing"] = .1
                     text = scene(2, {"Gravity": SHAKEN[:2]}, Solids={"Ball": body}, Coupling={"Type": coupling})
                     rows, bodies = self.run_scene(text, 12, ("history", "bodies"))
-                    fall = 12 * .01 * 9.81
+                    largest = 1e-10 if kind == "rigid body" else 3e-3  # m/s, where 1.2 is free fall; flesh strays by its mesh, under constant gravity too
                     for name in ("vx", "vy"):
-                        self.assertLess(max(map(abs, column(bodies, name))), 1e-3 * fall)
+                        self.assertLess(max(map(abs, column(bodies, name))), largest)
                     self.assertLess(max(column(rows, "momentum_error")), 1e-8)
 
     def test_solids_fall_with_it(self):

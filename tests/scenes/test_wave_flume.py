@@ -1,4 +1,4 @@
-"""How much of a wave comes back from the beach of the shipped flume, and how fast fluid slows down where it is damped."""
+"""The part of a wave that comes back from the beach of the shipped flume, and how fast fluid slows down where it is damped."""
 import math
 import sys
 import tempfile
@@ -26,7 +26,7 @@ class WaveFlume(unittest.TestCase):
 
     @staticmethod
     def amplitude(rows):
-        """Of the wave's frequency, in the last five periods."""
+        """The amplitude at the wave's frequency, in the last five periods."""
         times, tops = column(rows, "time"), column(rows, "top")
         begin = times[-1] - 5 / FREQUENCY
         last = [(t, top) for t, top in zip(times, tops) if t > begin]

@@ -9,7 +9,7 @@ namespace lockstep {
 template <int dim>
 struct ForceParameters {
   Point<dim> gravity = Point<dim>::Zero();  ///< g in the middle of the present step [m/s^2]
-  FieldFormula<dim> gravity_law;            ///< of the time alone; what `gravity` is taken from
+  FieldFormula<dim> gravity_law;            ///< formulas of the time that `gravity` comes from
   Point<dim> body = Point<dim>::Zero();     ///< any other uniform acceleration [m/s^2]
   FieldFormula<dim> damping;                ///< rate at which the velocity decays [1/s]
   double expansion = 0;                     ///< Boussinesq, beta [1/K]

@@ -39,7 +39,7 @@ struct MacFlow {
   std::vector<CellState> accepted_cells;        ///< states of the cells then
   double accepted_step = 0;                     ///< its dt
   Point<dim> accepted_acceleration =
-      Point<dim>::Zero();           ///< of fluid without scalars in that step [m/s^2]
+      Point<dim>::Zero();           ///< force per mass without scalars in that step [m/s^2]
   std::vector<StoredField> fields;  ///< all that are kept from step to step
   double time = 0;                  ///< time of walls and inflows: time + dt of the last forces [s]
   double last_step = 0;             ///< dt of the last forces, for p = p̂ / dt in pictures

@@ -143,7 +143,7 @@ bool BoundarySide<dim>::jumps(double begin, double end) const {
     }
     return change > 0 && (after - before).norm() > 0.5 * change;
   };
-  // Where a velocity by formula is not zero is not known; points across the side tell.
+  // Points across the side tell: nobody knows where a formula is not zero.
   bool jumps = false;
   for (const double share : {0.21, 0.5, 0.83}) {
     const Point<dim> x = opening.box.min() + share * opening.box.sizes();

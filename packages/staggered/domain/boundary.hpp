@@ -26,12 +26,13 @@ struct BoundarySide {
   /// Velocity of the wall (tangential only) or the inflow [m/s].
   FieldFormula<dim> velocity = FieldFormula<dim>(std::vector<double>(dim, 0.));
   FieldFormula<dim> pressure =
-      FieldFormula<dim>(std::vector<double>{0.});  ///< of an open side [Pa]
+      FieldFormula<dim>(std::vector<double>{0.});  ///< given at an open side [Pa]
   InflowOpening<dim> opening;
-  std::optional<InflowWave<dim>> wave;                                   ///< instead of `velocity`
-  FieldFormula<dim> smoke = FieldFormula<dim>(std::vector<double>{0.});  ///< of the inflow [1]
+  std::optional<InflowWave<dim>> wave;  ///< instead of `velocity`
+  FieldFormula<dim> smoke =
+      FieldFormula<dim>(std::vector<double>{0.});  ///< carried by the inflow [1]
   FieldFormula<dim> temperature =
-      FieldFormula<dim>(std::vector<double>{0.});  ///< of the inflow [K]
+      FieldFormula<dim>(std::vector<double>{0.});  ///< carried by the inflow [K]
 
   bool closed() const { return type == SideType::wall || type == SideType::slip_wall; }
   /// True if fluid may come in or leave at a given velocity, or a wall move.

@@ -79,8 +79,9 @@ TEST(Fluid, InflowsCarryWhatIsAmbientUnlessTheySayElse) {
   scene.fluid.sublist("Smoke").set("Ambient", 0.5);
   scene.domain.sublist("Sides").sublist("x lower").set("Smoke", 0.0);
   const auto fluid = scene.make();
-  EXPECT_EQ(fluid->scalars().find("temperature")->inflow[0][0], 300);
-  EXPECT_EQ(fluid->scalars().find("smoke")->inflow[0][0], 0);
+  const BoundarySide<2>& inflow = fluid->domain().boundary.side(0, 0);
+  EXPECT_EQ(inflow.temperature(0, {0, 0}, 0), 300);
+  EXPECT_EQ(inflow.smoke(0, {0, 0}, 0), 0);
 }
 
 // Upper sides as well as lower ones, wherever round-off puts them: 0.1 has no exact binary.

@@ -35,7 +35,7 @@ void expect_constant(bool periodic, double cfl) {
   }
 }
 
-/// The same all over each side.
+/// Values that are the same all over each side.
 SideValues<2> side_values(double x_lower, double x_upper, double y_lower, double y_upper) {
   const auto all_over = [](double value) { return [value](const Point<2>&) { return value; }; };
   return {{{all_over(x_lower), all_over(x_upper)}, {all_over(y_lower), all_over(y_upper)}}};
