@@ -16,7 +16,7 @@ struct Phase {
 
 struct Phases {
   Phase liquid;
-  std::optional<Phase> gas;  ///< fluid above the surface; none: air without mass, p = 0
+  std::optional<Phase> gas;             ///< fluid above the surface; none: air without mass, p = 0
   bool transport_is_consistent = true;  ///< mass and momentum near the surface by one flux
   double largest_viscosity() const {
     return std::max(liquid.viscosity, gas ? gas->viscosity : 0.0);
