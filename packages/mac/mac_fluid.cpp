@@ -96,7 +96,7 @@ RCP<Vector> MacFluid<dim>::last_scaled_pressure() const {
       flow_.parameters.density * flow_.accepted_step * flow_.accepted_acceleration;
   CellField pressure =
       extended_pressure<dim>(flow_.domain, flow_.geometry.state.cells, flow_.accepted_cells,
-                             flow_.accepted_pressure, at_rest);
+                             flow_.accepted_pressure, at_rest, flow_.geometry.lightness);
   // Viscosity would hand on what light faces get for a moment, and they give it back a
   // thousandfold.
   if (liquid_ && !flow_.liquid->has_gas() && viscosity_.acts())

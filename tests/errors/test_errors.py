@@ -233,7 +233,7 @@ CASES = [
            change=(SIDE, INFLOW + value(parameter, kind, text)))
       for parameter, kind, text in (("Ramp Time", "double", "1"), ("End", "double", "1"), ("Profile", "string", "parabolic"))],
     Case("bad formulas of a side", ["There are 2 mistakes", "line ", "\"Velocity\": cannot evaluate \"(6*Y*(1 - y))\"", "Did you mean \"y\"",
-                                    "\"Temperature\": cannot evaluate \"(sin(t)\""],
+                                    "\"Temperature\": cannot evaluate \"((sin(t)\""],
          change=(SIDE, value("Type", "string", "inflow") + value("Velocity", "Array(double)", "{[6*Y*(1 - y)], 0}") + value("Temperature", "double", "[(sin(t]"))),
     Case("a warm inflow of a fluid without temperature", ["x lower", "the fluid carries none", "\"Fluid/Temperature\""],
          change=(SIDE, INFLOW + value("Temperature", "double", "300"))),

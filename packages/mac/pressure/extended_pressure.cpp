@@ -7,7 +7,7 @@ namespace lockstep {
 template <int dim>
 CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<CellState>& now,
                             const std::vector<CellState>& before, CellField pressure,
-                            const Point<dim>& gradient) {
+                            const Point<dim>& gradient, const std::vector<float>& lightness) {
   const TiledGrid<dim>& grid = domain.grid;
   std::vector<int> missing;
   grid.for_each_owned_cell([&](int cell) {
@@ -30,12 +30,13 @@ CellField extended_pressure(const MacDomain<dim>& domain, const std::vector<Cell
     for (const int cell : missing) {
       double sum = 0;
       int n = 0;
+      const double step = lightness.empty() ? h : h / lightness[cell];
       for (int axis = 0; axis < dim; ++axis) {
         for (int side = 0; side < 2; ++side) {
           const int other = grid.neighbor(cell, axis, side);
           if (other < 0 || !known[other])
             continue;
-          sum += pressure[other] + (side == 0 ? h : -h) * gradient[axis];
+          sum += pressure[other] + (side == 0 ? step : -step) * gradient[axis];
           ++n;
         }
       }
@@ -94,9 +95,11 @@ void bound_beside_air(const MacDomain<dim>& domain, const MacGeometry<dim>& geom
 }
 
 template CellField extended_pressure<2>(const MacDomain<2>&, const std::vector<CellState>&,
-                                        const std::vector<CellState>&, CellField, const Point<2>&);
+                                        const std::vector<CellState>&, CellField, const Point<2>&,
+                                        const std::vector<float>&);
 template CellField extended_pressure<3>(const MacDomain<3>&, const std::vector<CellState>&,
-                                        const std::vector<CellState>&, CellField, const Point<3>&);
+                                        const std::vector<CellState>&, CellField, const Point<3>&,
+                                        const std::vector<float>&);
 template void bound_beside_air<2>(const MacDomain<2>&, const MacGeometry<2>&,
                                   const std::function<double(int, int, int, int)>&, CellField&);
 template void bound_beside_air<3>(const MacDomain<3>&, const MacGeometry<3>&,
