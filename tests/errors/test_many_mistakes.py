@@ -42,7 +42,7 @@ def mutations_of(parameter):
     kind, name = parameter.get("type"), parameter.get("name")
     if name in ("Type", "Shape", "Include", "Dimension"):  # they decide what else is valid
         return []
-    found = [misspell, change_type, name_no_type]
+    found = [misspell, name_no_type] + [change_type] * (kind != "bool")
     if kind in ("double", "int"):
         found += [damage_value, break_formula]
     return found

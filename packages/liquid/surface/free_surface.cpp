@@ -33,7 +33,8 @@ void set_phase_densities(const MacDomain<dim>& domain, const FreeSurface<dim>& f
     return lower ? free_surface.crossing(face.lower, face.upper)
                  : free_surface.crossing(face.upper, face.lower);
   };
-  geometry.lightness.assign(grid.n_stored_cells(), 1);
+  // One entry more: it is empty on all ranks or on none, also on one without cells.
+  geometry.lightness.assign(grid.n_stored_cells() + 1, 1);
   grid.for_each_stored_cell([&](int cell) {
     if (!free_surface.wet(cell))
       geometry.lightness[cell] = static_cast<float>(liquid / gas);
