@@ -94,12 +94,12 @@ class Fish(unittest.TestCase):
         self.assertGreater(energies[0], energies[1] / 2)
 
     def test_it_swims(self):
-        """The fish swims, and has hardly more energy than its joints put in. Its area goes with the shape that the grid sees."""
+        """The fish swims, and has no more energy than its joints put in. It keeps its area, as its surface pushes what it sweeps."""
         tables, areas = swim(1, 2.)
         places = [row["x"] for row in tables["bodies"] if row["name"] == "Flesh"]
         self.assertGreater(places[-1] - places[0], .01)
-        self.assertLess(abs(areas[-1] / areas[0] - 1), .012)
-        self.assertGreater(power_defect(tables)[-1], -.1)  # the step gives it 6 % of its joints' work, not yet explained
+        self.assertLess(abs(areas[-1] / areas[0] - 1), 2e-4)
+        self.assertGreater(power_defect(tables)[-1], .05)  # the water's friction
 
     def test_its_joints_do_the_work(self):
         """In thin air, without friction in the flesh: all of it is motion and strain."""
