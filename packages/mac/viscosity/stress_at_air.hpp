@@ -14,8 +14,8 @@ namespace lockstep {
 /// angles to each other, each of which shares a cell and an edge; in 3D but for mu (div u)^2,
 /// without which the form would not be positive.
 ///
-/// Where two phases meet it is the same with a mu for each cell and edge, that of air without mass
-/// being 0.
+/// Two phases have the same form with a mu for each cell and edge, that of air without mass being
+/// 0.
 ///
 /// The form is that of the couplings alone where solids are near. The terms that cancel in the
 /// middle leave one of either sign where that ends: they may be used only where `is_definite` says
