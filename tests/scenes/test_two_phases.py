@@ -10,6 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
 from simulation import assert_close, attempt, column, simulate, table, without_times  # noqa: E402
 
+SCENES = Path(__file__).resolve().parents[2] / "xml-params/scenes"
 G = 9.8
 DISC = {"Disc": {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .2}, "Position": (.5, .5), "Density": 500.6}}
 BALL = {"Ball": {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .2}, "Position": (.5, .5, .5), "Density": 500.6}}
@@ -107,6 +108,28 @@ class TwoPhases(unittest.TestCase):
         history, bodies = self.run_scene(scene(Solids=cloth, step=.004), "--steps", 25)
         self.assertLess(column(bodies, "y")[-1], .519)
         self.assertLess(max(column(history, "momentum_error")), 1e-12)
+
+    def test_two_alike_are_one(self):
+        """A disc that falls through the surface between two fluids of one density feels a full tank of it, to the tolerance of the
+        solves: what the phases share out between them is the whole, in both couplings."""
+        disc = {"Disc": {**DISC["Disc"], "Position": (.47, .56), "Density": 3000.}}
+        for coupling in ("flux", "mixed face"):
+            more = {"Solids": disc, "Coupling": {"Type": coupling}, "Solver": {"Tolerance": 1e-11}}
+            alike = scene(ratio=1., **more).replace('<ParameterList name="Phases">', '<ParameterList name="Phases">\n<Parameter name="Interface Transport" type="string" value="plain"/>')
+            full = scene(**more)
+            begin, end = full.index('<ParameterList name="Phases">'), full.index('<ParameterList name="Time">')
+            full = full[:begin] + '<Parameter name="Density" type="double" value="1000"/>\n<Parameter name="Order in Time" type="int" value="1"/>\n</ParameterList>\n' + full[end:]
+            (_, of_two), (_, of_one) = (self.run_scene(text, "--steps", 8) for text in (alike, full))
+            assert_close(of_two, of_one, ("x", "y", "vx", "vy"), 1e-6)
+
+    def test_any_water_has_air_by_one_option(self):
+        """Figs. 2, 3, 8 and 13 below air with a mass: momentum to round-off, and as many iterations as without."""
+        for name in ("floating-boat", "buoyant-spheres-water", "cloth-bags", "fish"):
+            with tempfile.TemporaryDirectory() as folder:
+                simulate(SCENES / f"{name}.xml", folder, "--steps", 2, "--set", "Fluid/Phases/Gas/Density=1.2", "--set", "Output/Frames=false")
+                history = table(Path(folder) / "history.csv")
+            self.assertLess(max(column(history, "momentum_error")), 1e-13, name)
+            self.assertLess(max(column(history, "s2_iterations")), 80, name)
 
     def test_ranks_and_restart(self):
         text = scene(cells=32, Solids=DISC, step=.004).replace("500.6", "700.0")
