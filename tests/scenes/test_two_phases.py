@@ -98,9 +98,9 @@ class TwoPhases(unittest.TestCase):
         """A bubble of seven cells below a surface is not closed, as one without mass would be: it sets out at g, its weight's place
         taken by an added mass of as much water."""
         surface = {"Liquid": {"Pool": {"Type": "level", "Height": .7}}, "Bubbles": {"Bubble": {"Type": "ball", "Center": (.5, .35), "Radius": 1.5 / 32}}}
-        history, _ = self.run_scene(scene(surface=surface, ratio=1e3, step=.002), "--steps", 3)
+        history, _ = self.run_scene(scene(surface=surface, ratio=1e3, step=.002), "--steps", 20)
         rise = column(history, "fluid_momentum_y")[-1] / (-999 * math.pi * (1.5 / 32) ** 2 * column(history, "time")[-1])
-        self.assertAlmostEqual(rise, G, delta=.15 * G)
+        self.assertAlmostEqual(rise, G, delta=.25 * G)
 
     def test_bodies_and_shells_cross_the_surface(self):
         """Free fall less the weight of the gas before a disc meets the water; momentum to round-off throughout, in both couplings, and
