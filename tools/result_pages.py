@@ -83,7 +83,7 @@ TOOL_PAGES = {
     "strategies-systems": Tool(["tools/compare-strategies systems"], [], [*ANY_SOLVE, "tests/data", "drivers/solve.cpp"]),
     "swimming": Tool(["tools/measure-swimming"], ["xml-params/scenes/fish-2d.xml", "xml-params/scenes/fish.xml"]),
     "viscous-coupling": Tool(["tools/compare-viscous-coupling"], [], ["tools/compare-viscous-coupling"]),
-    "water-cost": Tool(["tools/measure-water --cells 56 64 96 108 128"], [f"{STUDIES}/water-cost-scene.xml"]),
+    "water-cost": Tool(["tools/measure-water --cells 64 96 128 --ranks 1"], [f"{STUDIES}/water-cost-scene.xml"]),
 }
 
 
