@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <unordered_map>
 
 #include "base/errors.hpp"
 #include "linear/matrix_rows.hpp"
@@ -58,6 +59,62 @@ void for_each_local_entry(const CrsMatrix& matrix, int row, Visit visit) {
   for (std::size_t k = 0; k < indices.extent(0); ++k)
     visit(indices(k), values(k));
 }
+
+/// Sums up entries by the number of their column: a dense row and a list of what stands in it, so
+/// that a row costs what goes into it, not what comes out times a search.
+class RowSum {
+ public:
+  using Entries = std::vector<std::pair<int, double>>;
+
+  explicit RowSum(std::size_t n_columns) : sums_(n_columns, 0.), is_named_(n_columns, 0) {}
+
+  void add(int column, double value) {
+    if (!is_named_[column]) {
+      is_named_[column] = 1;
+      named_.push_back(column);
+    }
+    sums_[column] += value;
+  }
+  /// Returns the sums, and begins anew from zero.
+  Entries take() {
+    Entries entries;
+    entries.reserve(named_.size());
+    for (const int column : named_) {
+      entries.push_back({column, sums_[column]});
+      sums_[column] = 0;
+      is_named_[column] = 0;
+    }
+    named_.clear();
+    return entries;
+  }
+
+ private:
+  std::vector<double> sums_;
+  std::vector<char> is_named_;
+  std::vector<int> named_;
+};
+
+/// One count for the columns of several matrices.
+class ColumnNumbers {
+ public:
+  /// Returns the numbers of a column map's local indices.
+  std::vector<int> of(const Map& columns) {
+    std::vector<int> numbers;
+    for (int k = 0; k < static_cast<int>(columns.getNodeNumElements()); ++k) {
+      const GlobalIndex id = columns.getGlobalElement(k);
+      const auto [entry, is_new] = number_of_.emplace(id, static_cast<int>(ids_.size()));
+      if (is_new)
+        ids_.push_back(id);
+      numbers.push_back(entry->second);
+    }
+    return numbers;
+  }
+  const std::vector<GlobalIndex>& ids() const { return ids_; }
+
+ private:
+  std::unordered_map<GlobalIndex, int> number_of_;
+  std::vector<GlobalIndex> ids_;
+};
 
 /// The rows of a matrix that are named by the columns of another one, in their order: local row k
 /// is that of local column k. Collective.
@@ -159,18 +216,22 @@ void Reduction::resolve(const NameOf& name_of) {
                             name_of(first));
     throw_on_all(comm, failure, static_cast<int>(ExitCode::bad_input));
     const RCP<const CrsMatrix> of_columns = rows_of_columns(combinations_, *combinations_);
+    ColumnNumbers numbers;
+    const std::vector<int> outer = numbers.of(*combinations_->getColMap());
+    const std::vector<int> inner = numbers.of(*of_columns->getColMap());
+    RowSum sum(numbers.ids().size());
     std::vector<Triplet> triplets;
     for (const int row : combined_) {
-      const GlobalIndex id = map_->getGlobalElement(row);
       for_each_local_entry(*combinations_, row, [&](int column, double weight) {
         if (is_left[column] == 0)
-          triplets.push_back({id, combinations_->getColMap()->getGlobalElement(column), weight});
+          sum.add(outer[column], weight);
         else
-          for_each_local_entry(*of_columns, column, [&](int inner, double inner_weight) {
-            triplets.push_back(
-                {id, of_columns->getColMap()->getGlobalElement(inner), weight * inner_weight});
+          for_each_local_entry(*of_columns, column, [&](int k, double inner_weight) {
+            sum.add(inner[k], weight * inner_weight);
           });
       });
+      for (const auto& [column, weight] : sum.take())
+        triplets.push_back({map_->getGlobalElement(row), numbers.ids()[column], weight});
     }
     combinations_ = assemble_triplets(std::move(triplets), map_, map_);
   }
@@ -290,40 +351,55 @@ void Reduction::keep_reactions(Vector& residual) const {
   residual.update(1, *reactions, 0);
 }
 
-/// Returns the matrix with the entries of combinations moved to the dofs that they are made of.
+/// P^T (C P), row by row: C P first, then for each carrier the rows of the dofs that follow it.
 RCP<CrsMatrix> Reduction::combined(const CrsMatrix& matrix) const {
   const RCP<const CrsMatrix> of_columns = rows_of_columns(combinations_, matrix);
-  const Map& columns = *matrix.getColMap();
+  ColumnNumbers numbers;
+  const std::vector<int> direct = numbers.of(*matrix.getColMap());
+  const std::vector<int> through = numbers.of(*of_columns->getColMap());
+  const std::vector<int> carriers = numbers.of(*combinations_->getColMap());
   Vector is_combined(map_);
   for (const int row : combined_)
     is_combined.replaceLocalValue(row, 1.);
+  const auto row_is_combined = is_combined.getData();
   const RCP<const Vector> on_column = on_columns(matrix, is_combined);
   const auto column_is_combined = on_column->getData();
-  std::vector<char> row_is_combined(map_->getNodeNumElements(), 0);
-  for (const int row : combined_)
-    row_is_combined[row] = 1;
+
+  RowSum sum(numbers.ids().size());
   std::vector<Triplet> triplets;
-  const auto add_row = [&](GlobalIndex row, int local, double factor) {
-    for_each_local_entry(matrix, local, [&](int column, double value) {
+  const auto end_row = [&](GlobalIndex row) {
+    for (const auto& [column, value] : sum.take())
+      triplets.push_back({row, numbers.ids()[column], value});
+  };
+  std::vector<RowSum::Entries> rows;  // rows of C P of followers
+  std::vector<std::vector<std::pair<int, double>>> followers(
+      numbers.ids().size());  // followers of a carrier
+  for (int row = 0; row < row_is_combined.size(); ++row) {
+    for_each_local_entry(matrix, row, [&](int column, double value) {
       if (column_is_combined[column] == 0)
-        triplets.push_back({row, columns.getGlobalElement(column), factor * value});
+        sum.add(direct[column], value);
       else
         for_each_local_entry(*of_columns, column, [&](int inner, double weight) {
-          triplets.push_back(
-              {row, of_columns->getColMap()->getGlobalElement(inner), factor * value * weight});
+          sum.add(through[inner], value * weight);
         });
     });
-  };
-  for (int row = 0; row < static_cast<int>(row_is_combined.size()); ++row) {
     const GlobalIndex id = map_->getGlobalElement(row);
-    if (!row_is_combined[row]) {
-      add_row(id, row, 1);
+    if (row_is_combined[row] == 0) {
+      end_row(id);
       continue;
     }
     triplets.push_back({id, id, 1});
     for_each_local_entry(*combinations_, row, [&](int carrier, double weight) {
-      add_row(combinations_->getColMap()->getGlobalElement(carrier), row, weight);
+      followers[carriers[carrier]].push_back({static_cast<int>(rows.size()), weight});
     });
+    rows.push_back(sum.take());
+  }
+  for (std::size_t carrier = 0; carrier < followers.size(); ++carrier) {
+    for (const auto& [row, weight] : followers[carrier]) {
+      for (const auto& [column, value] : rows[row])
+        sum.add(column, weight * value);
+    }
+    end_row(numbers.ids()[carrier]);
   }
   return assemble_triplets(std::move(triplets), map_, map_);
 }
