@@ -42,6 +42,7 @@ class MacFluid : public FluidDiscretization<dim> {
 
   bool begin_step(double time, double dt, const std::function<double()>& solid_speed) override;
   void begin_prediction() override { flow_.prediction = flow_.velocity; }
+  void leave_order_to_scheme() override { flow_.forget_history(); }
   bool begin_advection_velocity(double dt) override;
   ForceImpulse<dim> add_forces(double time, double dt) override;
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;

@@ -38,6 +38,8 @@ class MomentumLedger {
     }
     return total;
   }
+  /// By source, in the order in which they came.
+  const std::vector<std::pair<std::string, Momentum<dim>>>& entries() const { return entries_; }
   const Momentum<dim>& before() const { return before_; }
   const Momentum<dim>& after() const { return after_; }
 

@@ -189,6 +189,9 @@ class FluidDiscretization : public PlugIn {
 
   // The stages of a step.
 
+  /// The scheme of time is of second order by itself, in kicks and drifts: what the fluid does for
+  /// that on its own account ends. Before the first step; local. Default: it does nothing.
+  virtual void leave_order_to_scheme() {}
   /// Begins a step from `time` to time + dt: tiles may be made where things will move. Returns true
   /// if u^n lives on other cells than when it was accepted, without being free of divergence there:
   /// then the geometry is to be frozen anew. `solid_speed`: that of the fastest solid [m/s];

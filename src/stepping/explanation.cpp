@@ -10,7 +10,7 @@
 namespace lockstep {
 
 template <int dim>
-std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
+std::string explanation(Components<dim>& components, TimeScheme<dim>& scheme,
                         const SceneOptions& options) {
   const bool reads_pressure = options.step.prediction.incremental_pressure;
   const auto& fluid = *components.fluid;
@@ -69,7 +69,7 @@ std::string explanation(Components<dim>& components, PaperStep<dim>& scheme,
   return text;
 }
 
-template std::string explanation(Components<2>&, PaperStep<2>&, const SceneOptions&);
-template std::string explanation(Components<3>&, PaperStep<3>&, const SceneOptions&);
+template std::string explanation(Components<2>&, TimeScheme<2>&, const SceneOptions&);
+template std::string explanation(Components<3>&, TimeScheme<3>&, const SceneOptions&);
 
 }  // namespace lockstep

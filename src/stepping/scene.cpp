@@ -38,6 +38,13 @@ void declare_time(ParameterList& scene, bool has_joints) {
         "Larger turns cost energy; above 0.5 joints give all of their impulse at the end of the "
         "step, but those of a mechanism that is by itself: without fluid, flesh, control, limits, "
         "contact in that step, or prescribed solids.");
+  declare_between(
+      time, "Order in Time", 1, 1, 2,
+      "Of the scheme that moves solids and fluid together. 1: the paper's, bodies move by a solve "
+      "that is thrown away. 2: both solves of a step are kept, half of the forces act before the "
+      "bodies move and half after (kick, drift, kick): floating and falling rigid bodies lose none "
+      "of their motion to the step; no joints, soft solids or trapped gas. Advection then is of "
+      "second order, too, whatever that of \"Fluid\" says. Where nothing is free to move, 1.");
   declare_choice(
       time, "Pressure Correction", "rotational", {"rotational", "incremental", "non-incremental"},
       "Pressure of the last step in the viscous solve. rotational: with the correction by "
@@ -335,6 +342,7 @@ SceneOptions scene_options(const ParameterList& scene) {
   options.time.cfl = time.get<double>("CFL");
   options.time.largest_step = time.get<double>("Largest Step");
   options.time.most_steps = time.get<int>("Steps");
+  options.time.order = time.get<int>("Order in Time");
   const auto& correction = time.get<std::string>("Pressure Correction");
   options.step.prediction.incremental_pressure = correction != "non-incremental";
   options.step.prediction.rotational_pressure = correction == "rotational";

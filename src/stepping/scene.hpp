@@ -4,7 +4,7 @@
 
 #include "interfaces/registries.hpp"
 #include "parameters/source.hpp"
-#include "stepping/step/paper_step.hpp"
+#include "stepping/step/time_scheme.hpp"
 #include "stepping/step_size.hpp"
 
 namespace lockstep {

@@ -110,7 +110,7 @@ class Simulation {
   const Log& log_;
   StageTimers timers_;
   Components<dim> components_;
-  std::unique_ptr<PaperStep<dim>> scheme_;
+  std::unique_ptr<TimeScheme<dim>> scheme_;
   RunTables<dim> tables_;
   ObserverTables<dim> observers_;
   FrameWriter frames_;

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "stepping/step/paper_step.hpp"
+#include "stepping/step/time_scheme.hpp"
 
 namespace lockstep {
 

@@ -102,7 +102,7 @@ class Design(unittest.TestCase):
         self.assertEqual({name: known for name, known in siblings.items() if known}, SIBLINGS)
 
     def test_collaborators_of_the_step(self):
-        script = (ROOT / "src/stepping/step/paper_step.hpp").read_text()
+        script = (ROOT / "src/stepping/step/time_scheme.hpp").read_text()
         members = set(re.findall(r"^  (\w+)<dim> \w+_;", script, re.MULTILINE)) - {"CoupledSystem"}
         named = rows("A step", 4)
         self.assertEqual({quoted(row[0])[0] for row in named}, members)

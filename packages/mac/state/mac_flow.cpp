@@ -94,6 +94,20 @@ double MacFlow<dim>::largest_speed() const {
 }
 
 template <int dim>
+void MacFlow<dim>::forget_history() {
+  if (!history)
+    return;
+  const std::vector<StoredField> gone = history->fields();
+  const auto is_gone = [&gone](const StoredField& field) {
+    return std::any_of(gone.begin(), gone.end(), [&field](const StoredField& one) {
+      return one.components == field.components;
+    });
+  };
+  fields.erase(std::remove_if(fields.begin(), fields.end(), is_gone), fields.end());
+  history.reset();
+}
+
+template <int dim>
 void MacFlow<dim>::save(CheckpointWriter& checkpoint) const {
   save_fields(domain, fields, checkpoint);
   CellField cells(domain.grid.n_stored_cells(), static_cast<double>(CellState::outside));

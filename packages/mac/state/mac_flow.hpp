@@ -57,6 +57,7 @@ struct MacFlow {
   /// Largest sum_a |u_a| of u^n [m/s]; looked for once. Collective.
   double largest_speed() const;
   void forget_speed() { largest_speed_.reset(); }
+  void forget_history();  ///< advection is of first order from now on. Local.
 
   /// The fields and times. Loading finds the tiles already as they were. Collective.
   void save(CheckpointWriter& checkpoint) const;

@@ -90,9 +90,9 @@ bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
     return false;
   const Vector& velocity = *solution.velocity;
   if (n_solves < options_.newton_iterations) {
-    const RCP<const Vector> before = solids.explicit_momentum(context.step.begin, context.dt);
+    const RCP<const Vector> before = solids.explicit_momentum(context.begin, context.dt);
     solids.linearise(context.dt, velocity);
-    momentum.update(1, *solids.explicit_momentum(context.step.begin, context.dt), -1, *before, 1);
+    momentum.update(1, *solids.explicit_momentum(context.begin, context.dt), -1, *before, 1);
     return true;
   }
   if (context.moves_positions)
@@ -204,7 +204,7 @@ void CoupledSolve<dim>::accept(const StepContext<dim>& context, const MotionWith
     given.update(1, *end.contact.reactions, 1);
   solids.joints()->take_note(
       {context.joints.held, solids.reduction().on_given(given), end.contact.limit_impulses},
-      context.step.begin, context.dt);
+      context.begin, context.dt);
 }
 
 template class CoupledSolve<2>;

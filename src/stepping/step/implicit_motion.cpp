@@ -162,9 +162,9 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
       settled.is_settled = false;
       return settled;
     }
-    const RCP<const Vector> before = solids.explicit_momentum(context.step.begin, dt);
+    const RCP<const Vector> before = solids.explicit_momentum(context.begin, dt);
     solids.linearise(dt, *at);
-    Vector change(*solids.explicit_momentum(context.step.begin, dt), Teuchos::Copy);
+    Vector change(*solids.explicit_momentum(context.begin, dt), Teuchos::Copy);
     change.update(-1, *before, 1);
     momentum.update(1, change, 1);
     impulse.update(1, change, 1);

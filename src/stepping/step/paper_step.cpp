@@ -15,52 +15,20 @@
 
 namespace lockstep {
 
-template <int dim>
-PaperStep<dim>::PaperStep(Components<dim>& components, const StepOptions& options,
-                          double start_time, StageTimers& timers)
-    : components_(components),
-      system_(*components.fluid, *components.solids, *components.coupling),
-      transport_(components, system_, timers),
-      solve_(components, system_, options.solve, timers),
-      prediction_(components, system_, solve_, options.prediction, timers),
-      solid_forces_(components, system_),
-      positions_(components, system_, solve_, timers),
-      advection_(components, system_, options.solve.tolerance),
-      audit_(components, system_, options.energy_budget),
-      timers_(timers),
-      time_(start_time) {
-  transport_.freeze();
-  audit_.start(time_);
-  solve_.check_start(time_);
-}
-
 /// 1 to 3: held dofs have their mean velocities, so that positions follow their scripts.
 template <int dim>
 StepContext<dim> PaperStep<dim>::positions(const StepTime& step) const {
-  return {step, "S1", step.dt / 2, true, components_.solids->constraints(step.begin, step.end())};
+  return {step,        "S1", step.begin,
+          step.dt / 2, true, components_.solids->constraints(step.begin, step.end())};
 }
 
 /// 5 to 7: held dofs have their velocities at the end of the step.
 template <int dim>
 StepContext<dim> PaperStep<dim>::velocities(const StepTime& step,
                                             const StartImpulse& joints) const {
-  return {step,  "S2", step.dt, false, components_.solids->constraints(step.end(), step.end()),
+  return {step,    "S2",  step.begin,
+          step.dt, false, components_.solids->constraints(step.end(), step.end()),
           joints};
-}
-
-/// True if the fluid is on other cells than before.
-template <int dim>
-bool PaperStep<dim>::begin(const StepTime& step) {
-  const bool has_moved = transport_.make_room(step);
-  components_.solids->set_gravity(components_.fluid->gravity());
-  if (components_.solids->begin_step(step.begin, step.dt)) {  // other dofs are unknowns now
-    transport_.freeze();
-    audit_.start(step.begin);
-  }
-  if (components_.contact)
-    components_.contact->begin_step(step.begin);
-  audit_.begin(step);
-  return has_moved;
 }
 
 template <int dim>
@@ -72,7 +40,7 @@ StepReport<dim> PaperStep<dim>::advance(double dt, const std::function<void()>& 
   };
   const StepTime step{time_, dt, last_dt_, n_steps_ + 1};
   StageResults<dim> stages;
-  const bool is_projected = !begin(step) && last_dt_ > 0;
+  const bool is_projected = !this->begin(step) && last_dt_ > 0;
 
   const StepContext<dim> half = positions(step);
   if (components_.solids->has_unknowns())  // F1 serves S1 only
@@ -100,26 +68,10 @@ StepReport<dim> PaperStep<dim>::advance(double dt, const std::function<void()>& 
     return solve_.velocities(whole, stages.solids, stages.friction.viscous.solid_impulse);
   });
   return run("end", [&] {  // F4
-    StepReport<dim> report = audit_.report(whole, stages);
-    solve_.project(stages.end.solution, stages.friction.pressure);
-    audit_.end_projection(whole, stages, report);
-    solve_.accept(whole, stages.end, report.reactions);
-    audit_.close(whole, stages.end.solution, report);
-    time_ = step.end();
-    last_dt_ = dt;
-    ++n_steps_;
+    StepReport<dim> report = this->finish(whole, stages);
+    this->end(step);
     return report;
   });
-}
-
-template <int dim>
-void PaperStep<dim>::resume(double time, long long n_steps, double last_dt) {
-  time_ = time;
-  n_steps_ = n_steps;
-  last_dt_ = last_dt;
-  components_.solids->begin_step(time, 0);
-  transport_.freeze();
-  audit_.start(time);
 }
 
 template class PaperStep<2>;

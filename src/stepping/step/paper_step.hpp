@@ -1,55 +1,36 @@
 #pragma once
-#include <functional>
-
-#include "stepping/step/fluid_transport.hpp"
-#include "stepping/step/step_audit.hpp"
+#include "stepping/step/time_scheme.hpp"
 
 namespace lockstep {
 
-struct StepOptions {
-  CoupledSolveOptions solve;  ///< its tolerance is that of F2, too
-  PredictionOptions prediction;
-  bool energy_budget = false;  ///< reports have it
-};
-
-/// The scheme of time of Section 7, a script on collaborators that do not know it.
+/// The scheme of time of Section 7, of first order: solids are moved by what a first solve finds,
+/// which is thrown away; a second one finds velocities.
 template <int dim>
-class PaperStep {
+class PaperStep : public TimeScheme<dim> {
  public:
-  /// Freezes the geometry of the start. Throws InputError for plug-ins that do not fit together and
-  /// for prescribed motions without a solution. Collective.
+  using TimeScheme<dim>::advance;
+  /// See TimeScheme.
   PaperStep(Components<dim>& components, const StepOptions& options, double start_time,
-            StageTimers& timers);
+            StageTimers& timers)
+      : TimeScheme<dim>(components, options, start_time, timers) {}
 
-  /// Advances by dt. Throws SolveError if a solve fails, or if what is prescribed has no solution.
-  /// `between_stages` is called between the stages; once it has thrown, fluid and solids are
-  /// somewhere within the step, and of no use. Collective.
-  StepReport<dim> advance(
-      double dt, const std::function<void()>& between_stages = [] {});
-  double time() const { return time_; }  ///< [s]
-  /// For restart, after fluid and solids were loaded: freezes the geometry anew. `last_dt`: length
-  /// of the last of the `n_steps` [s]. Collective.
-  void resume(double time, long long n_steps, double last_dt);
-  CoupledSystem<dim>& system() { return system_; }
+  StepReport<dim> advance(double dt, const std::function<void()>& between_stages) override;
 
  private:
   StepContext<dim> positions(const StepTime& step) const;
   StepContext<dim> velocities(const StepTime& step, const StartImpulse& joints) const;
-  bool begin(const StepTime& step);
-
-  Components<dim>& components_;
-  CoupledSystem<dim> system_;
-  FluidTransport<dim> transport_;
-  CoupledSolve<dim> solve_;
-  Prediction<dim> prediction_;
-  SolidForces<dim> solid_forces_;
-  PositionUpdate<dim> positions_;
-  AdvectionVelocity<dim> advection_;
-  StepAudit<dim> audit_;
-  StageTimers& timers_;
-  double time_;
-  double last_dt_ = 0;     ///< 0 before the first step [s]
-  long long n_steps_ = 0;  ///< taken
+  using TimeScheme<dim>::components_;
+  using TimeScheme<dim>::transport_;
+  using TimeScheme<dim>::solve_;
+  using TimeScheme<dim>::prediction_;
+  using TimeScheme<dim>::solid_forces_;
+  using TimeScheme<dim>::positions_;
+  using TimeScheme<dim>::advection_;
+  using TimeScheme<dim>::audit_;
+  using TimeScheme<dim>::timers_;
+  using TimeScheme<dim>::time_;
+  using TimeScheme<dim>::last_dt_;
+  using TimeScheme<dim>::n_steps_;
 };
 
 }  // namespace lockstep

@@ -198,6 +198,19 @@ SolidPath<dim> PositionUpdate<dim>::find(const StepContext<dim>& context,
   return find_once(context, drag, {}, nullptr).path;
 }
 
+template <int dim>
+SolidPath<dim> PositionUpdate<dim>::drift(const StepContext<dim>& context) {
+  const auto& solids = *components_.solids;
+  const double dt = context.step.dt;
+  const auto velocity = rcp(new Vector(*solids.velocity(), Teuchos::Copy));
+  velocity->update(1, *solids.velocity_of(*solid_forces_.midpoint_correction(dt / 2)), 1);
+  SolidPath<dim> path;
+  if (components_.contact)
+    path.contact = components_.contact->resolve(solids, ContactPhase::position, dt, *velocity, {});
+  path.velocity = velocity;
+  return path;
+}
+
 template class PositionUpdate<2>;
 template class PositionUpdate<3>;
 

@@ -30,6 +30,9 @@ class PositionUpdate {
   /// `drag`: viscous impulse on the solids in the coupled solve; null: none. Moves nothing.
   /// Collective.
   SolidPath<dim> find(const StepContext<dim>& context, const RCP<const Vector>& drag);
+  /// The path of rigid solids that go on with the velocity they have: they turn as their angular
+  /// momenta have it, and what overlaps is pushed out. Moves nothing. Collective.
+  SolidPath<dim> drift(const StepContext<dim>& context);
 
  private:
   /// A path with what closing its joints asks of it.

@@ -31,7 +31,7 @@ template <int dim>
 FluidForces<dim> Prediction<dim>::add_forces(const StepContext<dim>& context) {
   ScopedStage stage(timers_, "forces");
   auto& fluid = *components_.fluid;
-  const ForceImpulse<dim> given = fluid.add_forces(context.step.begin, context.dt);
+  const ForceImpulse<dim> given = fluid.add_forces(context.begin, context.dt);
   FluidForces<dim> forces;
   if (context.moves_positions)
     return forces;

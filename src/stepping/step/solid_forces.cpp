@@ -3,6 +3,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "coupling/nonlinear_bodies.hpp"
+#include "interfaces/liquid.hpp"
 
 namespace lockstep {
 
@@ -48,8 +49,7 @@ RCP<Vector> SolidForces<dim>::midpoint_correction(double dt) const {
 
 template <int dim>
 RCP<Vector> SolidForces<dim>::own_momentum(const StepContext<dim>& context) const {
-  const RCP<Vector> momentum =
-      components_.solids->explicit_momentum(context.step.begin, context.dt);
+  const RCP<Vector> momentum = components_.solids->explicit_momentum(context.begin, context.dt);
   if (!context.joints.given.is_null())
     momentum->update(1, *context.joints.given, 1);
   return momentum;
@@ -69,11 +69,12 @@ SolidMomentum<dim> SolidForces<dim>::momentum(const StepContext<dim>& context,
   if (context.moves_positions)
     return result;
   if (has_unknowns) {
-    result.forces = solids.external_impulse(context.step.begin, context.dt);
+    result.forces = solids.external_impulse(context.begin, context.dt);
     if (!context.joints.given.is_null())
       result.joints = solids.momentum(*context.joints.given);
   }
-  add_drops(result);
+  if (context.takes_drops)
+    add_drops(result);
   return result;
 }
 

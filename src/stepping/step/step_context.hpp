@@ -28,11 +28,13 @@ template <int dim>
 struct StepContext {
   StepTime step;
   std::string solve;  ///< name of the coupled solve in messages and files
+  double begin = 0;   ///< time from which these stages act [s]
   double dt = 0;      ///< over which these stages act [s]
   /// They find where the solids go: their impulses and velocities are thrown away.
   bool moves_positions = false;
   Reduction constraints;
   StartImpulse joints = {};  ///< where velocities are found
+  bool takes_drops = true;   ///< impulses of drops on solids in the last transport act here
 };
 
 }  // namespace lockstep

@@ -14,10 +14,10 @@ template <int dim>
 SolidWork work_of_model(const SolidModel<dim>& model, const StepContext<dim>& context,
                         const Vector& velocity, const Vector& mean) {
   if (const auto* working = model.work())
-    return working->solid_work(context.step.begin, context.dt, velocity, mean);
+    return working->solid_work(context.begin, context.dt, velocity, mean);
   Vector impulse(mean.getMap()), without(mean.getMap());
-  model.explicit_momentum(context.step.begin, context.dt, impulse);
-  model.explicit_momentum(context.step.begin, 0, without);
+  model.explicit_momentum(context.begin, context.dt, impulse);
+  model.explicit_momentum(context.begin, 0, without);
   impulse.update(-1, without, 1);
   SolidWork work;
   work.loads = dot(impulse, mean);
@@ -125,7 +125,7 @@ void StepEnergy<dim>::add_solids(const StepContext<dim>& context, const CoupledS
   const SolidWork own = work_of_models<dim>(solids, context, *solution.velocity, mean);
   // The hydrostatic force, contact and drops have come to the momentum besides.
   Vector others(*solution.momentum, Teuchos::Copy);
-  others.update(-1, *solids.explicit_momentum(context.step.begin, context.dt), 1);
+  others.update(-1, *solids.explicit_momentum(context.begin, context.dt), 1);
   const double by_friction = work_of(friction), at_start = work_of(context.joints.given);
   book_.loads += own.loads + dot(others, mean) - by_friction - at_start;
   book_.fluid_friction -= by_friction;

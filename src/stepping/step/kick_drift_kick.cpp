@@ -1,0 +1,162 @@
+// A step in two kicks with a drift between them, from t^n to t^{n+1} = t^n + dt: Störmer and
+// Verlet's scheme for the coupled system. The geometry is that of x^n in 1, of x^{n+1} in 4.
+//
+//   1  kick   u* = u^n + dt/2 (g + nu lap u*), then A p - B V = -G^T u*,
+//             B^T p + C V = M_S V^n + dt/2 f + W^T M_F u*_F;  u^{n+1/2} = u* - M^-1 G p, V^{n+1/2}
+//             = V; contacts act on V: gap + dt J_n V >= 0
+//   2  drift  x^{n+1} = x^n + dt V^{n+1/2}; bodies turn as their angular momenta have it
+//   3         u_ADV = u^{n+1/2}, free of divergence with (x^{n+1} - x^n) / dt; u^{n+1/2}, scalars
+//             and the free surface are carried along it
+//   4  kick   as 1, at x^{n+1}: u^{n+1}, V^{n+1}
+#include "stepping/step/kick_drift_kick.hpp"
+
+#include <Tpetra_Vector.hpp>
+#include <algorithm>
+
+#include "base/errors.hpp"
+
+namespace lockstep {
+
+namespace {
+
+/// The step is of second order for what is moved by the velocities of the coupled solve alone.
+template <int dim>
+void check_solids(const Components<dim>& components) {
+  constexpr auto remedy = "set \"Time/Order in Time\" to 1, or leave it out.";
+  const auto& solids = components.solids->solids();
+  const auto deforms = [](const SolidDescription& solid) {
+    return !solid.rigid && !solid.prescribed;
+  };
+  const auto soft = std::find_if(solids.begin(), solids.end(), deforms);
+  check_input(soft == solids.end(),
+              "\"{}\" deforms, but the second order in time is one of rigid bodies; {}",
+              soft == solids.end() ? "" : soft->name, remedy);
+  check_input(!components.solids->joints(),
+              "The second order in time knows no joints, which have one of their own; {}", remedy);
+  check_input(!components.fluid->gas(), "The second order in time knows no trapped gas; {}",
+              remedy);
+}
+
+/// Adds the impulses of the first kick to the ledger of the second, as if the drift came before
+/// both.
+template <int dim>
+MomentumLedger<dim> joined_books(const MomentumLedger<dim>& first,
+                                 const MomentumLedger<dim>& second) {
+  MomentumLedger<dim> sum;
+  sum.open(second.before() - (first.after() - first.before()));
+  for (const auto* ledger : {&first, &second}) {
+    for (const auto& [source, impulse] : ledger->entries())
+      sum.add(source, impulse);
+  }
+  sum.close(second.after());
+  return sum;
+}
+
+template <int dim>
+void add_impulses(const std::vector<Momentum<dim>>& more, std::vector<Momentum<dim>>& impulses) {
+  if (impulses.empty())
+    impulses = more;
+  else if (!more.empty())
+    add_each(more, impulses);
+}
+
+/// The report of a step of two kicks: what each gave is added up, the state is that of the second.
+template <int dim>
+StepReport<dim> joined(const StepReport<dim>& first, StepReport<dim> report) {
+  report.cfl = first.cfl;
+  report.s1 = first.s2;
+  report.incompatibility_s1 = first.incompatibility_s2;
+  report.viscous_iterations += first.viscous_iterations;
+  report.viscous_dissipation = (first.viscous_dissipation + report.viscous_dissipation) / 2;
+  report.viscous_number += first.viscous_number;
+  report.ledger = joined_books(first.ledger, report.ledger);
+  report.momentum_error = std::max(first.momentum_error, report.momentum_error);
+  report.angular_momentum_error =
+      std::max(first.angular_momentum_error, report.angular_momentum_error);
+  report.boundary_impulse += first.boundary_impulse;
+  report.transport_change += first.transport_change;
+  report.lumping_torque_error += first.lumping_torque_error;
+  report.linearisation_impulse += first.linearisation_impulse;
+  add_impulses(first.hydrodynamic_impulse, report.hydrodynamic_impulse);
+  add_impulses(first.contact_impulse, report.contact_impulse);
+  const ContactReport<dim> drift = report.contact_position;
+  report.contact_position = first.contact_velocity;
+  report.contact_position.n_crossings = drift.n_crossings;
+  report.contact_position.deepest_overlap =
+      std::max(drift.deepest_overlap, first.contact_velocity.deepest_overlap);
+  if (report.energy)
+    *report.energy += *first.energy;
+  return report;
+}
+
+}  // namespace
+
+template <int dim>
+KickDriftKick<dim>::KickDriftKick(Components<dim>& components, const StepOptions& options,
+                                  double start_time, StageTimers& timers)
+    : TimeScheme<dim>(components, options, start_time, timers) {
+  check_solids(components);
+  components.fluid->leave_order_to_scheme();
+}
+
+/// u* and V by the forces over `context`.
+template <int dim>
+StageResults<dim> KickDriftKick<dim>::kick(const StepContext<dim>& context) {
+  StageResults<dim> stages;
+  audit_.end_transport(context.step);
+  stages.forces = prediction_.add_forces(context);
+  audit_.end_forces();
+  stages.friction = prediction_.add_viscosity(context, stages.forces);
+  audit_.end_viscosity();
+  const ScopedStage timed(timers_, context.solve);
+  stages.solids = solid_forces_.momentum(context);
+  stages.end = solve_.velocities(context, stages.solids, stages.friction.viscous.solid_impulse);
+  return stages;
+}
+
+template <int dim>
+StepReport<dim> KickDriftKick<dim>::advance(double dt,
+                                            const std::function<void()>& between_stages) {
+  const auto run = [&](const std::string& name, const auto& stage) {
+    between_stages();
+    const ScopedStage timed(timers_, name);
+    return stage();
+  };
+  auto& solids = *components_.solids;
+  // The last pressure acted over half a step.
+  const StepTime step{time_, dt, last_dt_ / 2, n_steps_ + 1};
+  this->begin(step);
+
+  // Held dofs have their mean velocities, so that positions follow their scripts.
+  StepContext<dim> half{step,   "S1",  step.begin,
+                        dt / 2, false, solids.constraints(step.begin, step.end())};
+  half.takes_drops = false;
+  const StepReport<dim> first = run("kick", [&] {
+    transport_.begin_prediction();
+    return this->finish(half, kick(half));
+  });
+  const StepTime rest{time_, dt, dt / 2, n_steps_ + 1};
+  audit_.begin(rest);
+  const SolidPath<dim> path = run("solid motion", [&] {
+    const SolidPath<dim> found = positions_.drift(half);
+    solids.move(*found.velocity, step.begin, dt);
+    return found;
+  });
+  const AdvectionReport advection = run("F2", [&] { return advection_.make(rest, "F2", true); });
+  run("F3 advection", [&] { transport_.carry(rest); });
+  const StepContext<dim> whole{rest,   "S2",  step.begin + dt / 2,
+                               dt / 2, false, solids.constraints(step.end(), step.end())};
+  return run("kick", [&] {
+    StageResults<dim> stages = kick(whole);
+    stages.advection = advection;
+    stages.path = path;
+    const StepReport<dim> report = joined(first, this->finish(whole, stages));
+    this->end(step);
+    return report;
+  });
+}
+
+template class KickDriftKick<2>;
+template class KickDriftKick<3>;
+
+}  // namespace lockstep

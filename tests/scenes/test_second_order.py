@@ -1,0 +1,96 @@
+"""Time/Order in Time 2, both solves of a step kept: how a floating disc swings does not depend on the step, bodies that touch rest, turning
+bodies keep their momenta, books are closed, and neither ranks nor a restart change anything."""
+import math
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scene_xml import xml  # noqa: E402
+from simulation import attempt, column, simulate, table, without_times  # noqa: E402
+
+R, G = .1, 9.81
+
+
+def scene(solids, step, order=2, dimension=2, cells=(64, 64), level=True, **more):
+    fluid = {"Density": 1000., "Gravity": (0.,) * (dimension - 1) + (-G,)}
+    if level:
+        fluid["Free Surface"] = {"Liquid": {"Pool": {"Type": "level", "Height": 0.}}}
+    return xml("Scene", {"Dimension": dimension, "Domain": {"Lower": (-8 * R,) * dimension, "Upper": (8 * R,) * dimension, "Cells": cells},
+                         "Fluid": fluid, "Solids": solids, "Coupling": {"Type": "flux"}, "Solver": {"Tolerance": 1e-9},
+                         "Time": {"Order in Time": order, "End": 100., "Fixed Step": step}, "Output": {"Frames": False}, **more})
+
+
+def disc(density, position, **more):
+    return {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": R}, "Density": density, "Position": position, **more}
+
+
+class SecondOrder(unittest.TestCase):
+    def run_scene(self, text, *options, ranks=1):
+        """Histories of fluid and bodies."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "scene.xml").write_text(text)
+            simulate(folder / "scene.xml", folder / "output", *options, ranks=ranks)
+            return table(folder / "output/history.csv"), table(folder / "output/bodies.csv")
+
+    def test_a_floating_disc_swings_alike_at_any_step(self):
+        """Let go a tenth of R above its draft; its first trough, over that. In the paper's order a step of .1 sqrt(R/g) takes 15 % of it."""
+        def trough(order, step):
+            step *= math.sqrt(R / G)
+            history, bodies = self.run_scene(scene({"Disc": disc(500., (0., .1 * R))}, step, order), "--steps", round(4 * math.sqrt(R / G) / step))
+            self.assertLess(max(column(history, "momentum_error")), 1e-14)
+            return min(column(bodies, "y")) / (.1 * R)
+        self.assertAlmostEqual(trough(2, .2), trough(2, .05), delta=.015)
+        self.assertGreater(trough(1, .2) - trough(1, .05), .06)
+
+    def test_what_touches_rests(self):
+        """A stone on the floor of a tank, and a light ball under a lid that is held: two solves a kick and no motion."""
+        box = {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (3 * R, 2 * R)}, "Position": (0., -7 * R), "Density": 2000.}
+        for solids in ({"Stone": box}, {"Cork": disc(500., (0., -5 * R)), "Lid": {**box, "Position": (0., -3 * R), "Motion": {"Type": "static"}}}):
+            with self.subTest(list(solids)[0]):
+                history, bodies = self.run_scene(scene(solids, .01, Coupling={"Type": "mixed face"}), "--steps", 20)
+                self.assertLess(max(abs(value) for name in ("vx", "vy") for value in column(bodies, name)[-len(solids):]), 1e-6)
+                self.assertLess(column(history, "fluid_kinetic_energy")[-1], 1e-9)
+
+    def test_turning_bodies_keep_their_momenta(self):
+        """A box that turns about an axis that is none of its own, in vacuum: angular momentum to round-off, energy to second order."""
+        box = {"Box": {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (R, 2 * R, 3 * R)}, "Position": (0., 0., 0.), "Density": 500.,
+                       "Angular Velocity": (1., 2., .5), "Seen by Fluid": False}}
+        history, bodies = self.run_scene(scene(box, .05, dimension=3, cells=(8, 8, 8), level=False, Contact={"Type": "none"}), "--steps", 60)
+        self.assertLess(max(column(history, "angular_momentum_error")), 1e-13)
+        energy = column(history, "solid_kinetic_energy")
+        fall = [.5 * row * row for row in column(bodies, "vz")]
+        mass = 500. * 6 * R ** 3
+        spin = [total - mass * own for total, own in zip(energy, fall)]
+        self.assertLess(max(spin) / min(spin) - 1, 1e-6)
+
+    def test_ranks_and_restarts(self):
+        text = scene({"Disc": disc(500., (.03, .1 * R))}, .02)
+        whole = self.run_scene(text, "--steps", 8)
+        apart = self.run_scene(text, "--steps", 8, ranks=2)
+        for name in ("x", "y", "vx", "vy"):
+            self.assertAlmostEqual(column(whole[1], name)[-1], column(apart[1], name)[-1], delta=1e-9)
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "scene.xml").write_text(text)
+            simulate(folder / "scene.xml", folder / "output", "--steps", 4)
+            simulate(folder / "scene.xml", folder / "output", "--steps", 8, "--restart", folder / "output/checkpoint-000004.h5")
+            self.assertEqual(without_times(table(folder / "output/history.csv")), without_times(whole[0]))
+
+    def test_what_it_does_not_know_is_refused(self):
+        soft = {"Soft": {"Type": "deformable body", "Geometry": {"Shape": "box", "Size": (2 * R, 2 * R), "Mesh Spacing": R}, "Position": (0., 0.),
+                         "Density": 900.,
+                         "Material": {"Young's Modulus": 1e4}}}
+        nail = {"Nail": {"Type": "hinge", "Solids": ("space", "Disc"), "Point": (0., 0.)}}
+        for text, word in ((scene(soft, .01), "deforms"), (scene({"Disc": disc(500., (0., 0.))}, .01, Joints=nail), "joints")):
+            with tempfile.TemporaryDirectory() as name:
+                (Path(name) / "scene.xml").write_text(text)
+                failed = attempt(Path(name) / "scene.xml", Path(name) / "output")
+                self.assertEqual(failed.returncode, 2)
+                self.assertIn(word, failed.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
