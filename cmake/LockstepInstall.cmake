@@ -5,12 +5,13 @@ set(lockstep_cmake_directory "${CMAKE_INSTALL_LIBDIR}/cmake/Lockstep")
 
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/LockstepConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/generated/cmake/LockstepConfig.cmake"
-  INSTALL_DESTINATION "${lockstep_cmake_directory}" PATH_VARS CMAKE_INSTALL_DATADIR)
+  INSTALL_DESTINATION "${lockstep_cmake_directory}" PATH_VARS CMAKE_INSTALL_DATADIR CMAKE_INSTALL_INCLUDEDIR)
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/generated/cmake/LockstepConfigVersion.cmake"
                                  COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/generated/cmake/LockstepConfig.cmake"
               "${PROJECT_BINARY_DIR}/generated/cmake/LockstepConfigVersion.cmake"
               "${CMAKE_CURRENT_LIST_DIR}/LockstepDependencies.cmake"
+              "${CMAKE_CURRENT_LIST_DIR}/LockstepPlugIn.cmake"
         DESTINATION "${lockstep_cmake_directory}")
 install(EXPORT LockstepTargets NAMESPACE Lockstep:: DESTINATION "${lockstep_cmake_directory}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/xml-params" "${PROJECT_SOURCE_DIR}/template"

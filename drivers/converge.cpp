@@ -181,6 +181,11 @@ int run(int argc, char** argv) {
   app.add_flag("--fresh", arguments.runner.fresh, "run everything again");
   app.add_flag("--list", arguments.list, "print the cases without running them");
   app.add_option("--simulate", arguments.runner.simulate, "program to run instead of simulate");
+  app.add_option("--plug-in", arguments.runner.plug_ins,
+                 "library of plug-ins that it loads; may be repeated")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false);
   app.add_flag("--parameters", arguments.parameters, "print what a study file may say");
   app.add_option("--format", arguments.format, "of --parameters: text or json")
       ->check(CLI::IsMember({"text", "json"}));

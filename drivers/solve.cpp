@@ -2,6 +2,7 @@
 //
 //   solve tests/data/two-balls.h5 xml-params/solvers/*.xml --output results
 //   mpirun -n 2 solve system.h5 xml-params/solvers/paper.xml --tolerance 1e-10
+//   solve system.h5 mine.xml --plug-in libmine.so
 //
 // Prints one row a strategy and writes DIR/solvers.csv: iterations, seconds to set up and to solve,
 // the residual of each block, the largest difference to the strategy direct, memory.
@@ -22,10 +23,11 @@
 #include "output/on_root.hpp"
 #include "output/run_record.hpp"
 #include "parameters/validate.hpp"
+#include "programs/load_plug_ins.hpp"
+#include "shipped/shipped_plug_ins.hpp"
 #include "solve/solver_file.hpp"
 #include "solve/system_file.hpp"
 #include "stepping/scene_file.hpp"
-#include "strategies/register_strategies.hpp"
 #include "studies/process_memory.hpp"
 
 using namespace lockstep;
@@ -34,7 +36,7 @@ namespace {
 
 struct Arguments {
   std::string system_file, output_directory;
-  std::vector<std::string> solver_files;
+  std::vector<std::string> solver_files, libraries;
   double tolerance = 0;  // 0: that of each file
   int most_direct_unknowns = 100000;
 };
@@ -193,6 +195,10 @@ int run(int argc, char** argv, const Communicator& comm) {
                                          "residual to reach; default: that of each solver file");
   app.add_option("--direct-limit", arguments.most_direct_unknowns,
                  "no error is computed for systems with more pressure unknowns");
+  app.add_option("--plug-in", arguments.libraries, "library of plug-ins to load; may be repeated")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -207,8 +213,9 @@ int run(int argc, char** argv, const Communicator& comm) {
               arguments.most_direct_unknowns);
 
   // 2. The strategies to try, the system, its exact solution.
-  StrategyRegistry strategies("solver strategy");
-  register_strategies(strategies);
+  PlugIns plug_ins = shipped_plug_ins();
+  load_plug_ins(arguments.libraries, plug_ins, comm);
+  const StrategyRegistry& strategies = plug_ins.space.strategies;
   const std::vector<Candidate> candidates = read_candidates(arguments, strategies, comm);
   const StoredSystem stored = read_system(arguments.system_file, comm);
   const Reference exact = exact_solution(stored, strategies, arguments.most_direct_unknowns);

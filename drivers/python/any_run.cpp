@@ -9,7 +9,7 @@
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/steering.hpp"
 #include "output/progress.hpp"
-#include "parameters/strict_xml.hpp"
+#include "programs/open_scene.hpp"
 #include "scenes/expand_scene.hpp"
 #include "shipped/shipped_plug_ins.hpp"
 #include "stepping/scene_file.hpp"
@@ -73,9 +73,9 @@ WholeField whole(const BoxFrame& box, const BoxField& field, const Communicator&
 template <int dim>
 class SteppedRun : public AnyRun {
  public:
-  SteppedRun(Document document, const OpenRequest& request, const Communicator& comm)
+  SteppedRun(Document document, const Registries<dim>& registries, const OpenRequest& request,
+             const Communicator& comm)
       : comm_(comm), log_(comm, std::cout, request.quiet ? LogLevel::quiet : LogLevel::normal) {
-    const Registries<dim> registries = shipped_plug_ins<dim>();
     const ParameterList valid =
         scene_parameters<dim>(registries, scene_fluid(document, request.settings));
     complete_scene(document, request.settings, valid, comm);
@@ -180,11 +180,11 @@ class SteppedRun : public AnyRun {
 
 std::unique_ptr<AnyRun> open_run(OpenRequest request) {
   const Communicator comm = Tpetra::getDefaultComm();
-  Document document = read_xml(request.scene, comm, FormulaPolicy::kept);
-  expand_scene(document, request.settings, shipped_plug_ins<3>().solids.schemas(), comm);
+  PlugIns plug_ins = shipped_plug_ins();
+  Document document = open_scene(request.scene, request.plug_ins, request.settings, plug_ins, comm);
   if (scene_dimension(document) == 2)
-    return std::make_unique<SteppedRun<2>>(std::move(document), request, comm);
-  return std::make_unique<SteppedRun<3>>(std::move(document), request, comm);
+    return std::make_unique<SteppedRun<2>>(std::move(document), plug_ins.plane, request, comm);
+  return std::make_unique<SteppedRun<3>>(std::move(document), plug_ins.space, request, comm);
 }
 
 }  // namespace lockstep

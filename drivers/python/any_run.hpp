@@ -16,6 +16,7 @@ namespace lockstep {
 struct OpenRequest {
   std::string scene, output, restart;
   std::vector<std::string> settings;  ///< "List/Name=value"
+  std::vector<std::string> plug_ins;  ///< libraries to load, beside those that the scene names
   bool quiet = true;
 };
 

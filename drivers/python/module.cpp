@@ -81,8 +81,11 @@ std::string setting_text(const py::handle& given) {
 }
 
 std::unique_ptr<Run> open(const py::object& scene, const py::object& output,
-                          const py::dict& settings, const py::object& restart, bool quiet) {
-  OpenRequest request{path_text(scene), path_text(output), path_text(restart), {}, quiet};
+                          const py::dict& settings, const py::object& restart, bool quiet,
+                          const py::list& plug_ins) {
+  OpenRequest request{path_text(scene), path_text(output), path_text(restart), {}, {}, quiet};
+  for (const py::handle& library : plug_ins)
+    request.plug_ins.push_back(path_text(py::reinterpret_borrow<py::object>(library)));
   for (const auto& [name, value] : settings)
     request.settings.push_back(text_of(py::str(name)) + "=" + setting_text(value));
   return std::make_unique<Run>(request);
@@ -192,11 +195,13 @@ void define_run(py::module_& module) {
 
 All members are collective on several ranks: every rank calls them with the same arguments.)");
   run.def(py::init(&open), arg("scene"), arg("output") = "output", arg("settings") = py::dict(),
-          arg("restart") = "", arg("quiet") = true, R"(Opens a scene and writes its start.
+          arg("restart") = "", arg("quiet") = true, arg("plug_ins") = py::list(),
+          R"(Opens a scene and writes its start.
 
 scene: the file, a text or a pathlib.Path, as the other two. output: the folder for frames, tables and checkpoints. settings: what `simulate --set`
 takes, as {"Time/End": 2.0, "Domain/Cells": (64, 64)}. restart: a checkpoint to go on from; forces and
-targets set from here are not in it. quiet: no line a step. Raises InputError, a ValueError.)");
+targets set from here are not in it. quiet: no line a step. plug_ins: libraries of plug-ins to load,
+beside those that the scene names. Raises InputError, a ValueError.)");
   run.def(
       "step", [](const Run& self) { return self->step(); },
       "Takes one step. False, and no step, at the end of the scene. Raises SolveError, an "

@@ -10,20 +10,6 @@ namespace lockstep {
 
 namespace {
 
-template <int dim>
-void declare_material(ParameterList& body) {
-  ParameterList law("law");
-  declare_required_positive(law, "Young's Modulus", "Stiffness in uniaxial stress [Pa].");
-  declare_between(law, "Poisson's Ratio", 0.3, -0.99, 0.4999,
-                  "Contraction across over stretch along [1]. In 2D strain is plane. Near 0.5 "
-                  "linear elements lock: refine, or stay below 0.45.");
-  std::vector<TypedSchema> laws;
-  for (const auto& material : material_kinds<dim>())
-    laws.push_back({material.name, material.documentation, law});
-  declare_typed_sublist(body, "Material", "The elastic law.", laws,
-                        material_kinds<dim>().front().name);
-}
-
 /// The sides of elements have no names in the file, their vertices have.
 MeshNames names_of_boundary(const MeshNames& volume, const std::vector<int>& vertices) {
   MeshNames names;
@@ -57,10 +43,11 @@ double holding_stiffness(const VolumeMesh<dim>& mesh, double density, double gra
 }  // namespace
 
 template <int dim>
-ParameterList deformable_body_parameters() {
+ParameterList deformable_body_parameters(const MaterialRegistry<dim>& materials) {
   ParameterList list("deformable body");
   declare_deformable_geometry<dim>(list);
-  declare_material<dim>(list);
+  declare_typed_sublist(list, "Material", "The elastic law.", materials.schemas(),
+                        materials.begin()->name);
   declare_required_positive(list, "Density", "Density at rest [kg/m^3] (2D: [kg/m^2]).");
   declare_at_least(list, "Viscosity", 0.0, 0.0,
                    "Viscosity of the material: shear stress over twice the strain rate [Pa s].");
@@ -70,7 +57,8 @@ ParameterList deformable_body_parameters() {
 
 template <int dim>
 DeformableBody<dim> read_deformable_body(const std::string& name, const ParameterList& list,
-                                         double grid_spacing, double gravity) {
+                                         double grid_spacing, double gravity,
+                                         const MaterialRegistry<dim>& materials) {
   MeshNames names = element_names();
   const VolumeMesh<dim> mesh =
       make_body_mesh<dim>(list.sublist("Geometry"), grid_spacing, name, names);
@@ -78,17 +66,16 @@ DeformableBody<dim> read_deformable_body(const std::string& name, const Paramete
   body.name = name;
   body.density = list.get<double>("Density");
   const ParameterList& material = list.sublist("Material");
-  const LameConstants lame = lame_constants(material.get<double>("Young's Modulus"),
-                                            material.get<double>("Poisson's Ratio"));
+  auto law = materials.create(material.get<std::string>("Type"), material);
+  const LameConstants lame = law->at_rest();
   const double factor = list.get<double>("Stiffness Damping");
   const StrainRateDamping damping{list.get<double>("Viscosity") + factor * lame.mu,
                                   factor * lame.lambda};
-  auto law = make_material<dim>(material.get<std::string>("Type"), lame);
+  const bool feels_rotations = law->feels_rotations();
   if (list.get<std::string>("Time Integration") == "fully-implicit" ||
       list.get<std::string>("Time Integration") == "second-order")
     law = held_together<dim>(std::move(law), holding_stiffness(mesh, body.density, gravity));
-  const bool is_linear = material.get<std::string>("Type") == "linear";
-  body.elements.push_back(volume_elements<dim>(is_linear ? turned_at_start(mesh, list) : mesh,
+  body.elements.push_back(volume_elements<dim>(feels_rotations ? turned_at_start(mesh, list) : mesh,
                                                std::move(law), damping));
   body.mass_elements = body.elements.back()->corners();
   for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e)
@@ -105,11 +92,11 @@ DeformableBody<dim> read_deformable_body(const std::string& name, const Paramete
   return body;
 }
 
-template ParameterList deformable_body_parameters<2>();
-template ParameterList deformable_body_parameters<3>();
+template ParameterList deformable_body_parameters<2>(const MaterialRegistry<2>&);
+template ParameterList deformable_body_parameters<3>(const MaterialRegistry<3>&);
 template DeformableBody<2> read_deformable_body<2>(const std::string&, const ParameterList&, double,
-                                                   double);
+                                                   double, const MaterialRegistry<2>&);
 template DeformableBody<3> read_deformable_body<3>(const std::string&, const ParameterList&, double,
-                                                   double);
+                                                   double, const MaterialRegistry<3>&);
 
 }  // namespace lockstep

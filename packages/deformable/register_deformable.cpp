@@ -27,16 +27,18 @@ std::unique_ptr<SolidModel<dim>> make_model(const std::string& type, const Read&
 }  // namespace
 
 template <int dim>
-void register_deformable(SolidRegistry<dim>& solids) {
-  solids.add("deformable body", "Elastic volume of triangles (2D) or tetrahedra (3D).",
-             deformable_body_parameters<dim>,
-             [](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
-               const auto read = [&setting](const std::string& name, const ParameterList& list) {
-                 return read_deformable_body<dim>(name, list, setting.smallest_length,
-                                                  setting.gravity.norm());
-               };
-               return make_model<dim>("deformable body", read, lists, setting);
-             });
+void register_deformable(SolidRegistry<dim>& solids,
+                         const std::shared_ptr<const MaterialRegistry<dim>>& materials) {
+  solids.add(
+      "deformable body", "Elastic volume of triangles (2D) or tetrahedra (3D).",
+      [materials] { return deformable_body_parameters<dim>(*materials); },
+      [materials](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
+        const auto read = [&](const std::string& name, const ParameterList& list) {
+          return read_deformable_body<dim>(name, list, setting.smallest_length,
+                                           setting.gravity.norm(), *materials);
+        };
+        return make_model<dim>("deformable body", read, lists, setting);
+      });
   solids.add("cloth",
              "Elastic thin shell of segments (2D) or triangles (3D): membrane and bending.",
              cloth_parameters<dim>,
@@ -48,7 +50,9 @@ void register_deformable(SolidRegistry<dim>& solids) {
              });
 }
 
-template void register_deformable<2>(SolidRegistry<2>&);
-template void register_deformable<3>(SolidRegistry<3>&);
+template void register_deformable<2>(SolidRegistry<2>&,
+                                     const std::shared_ptr<const MaterialRegistry<2>>&);
+template void register_deformable<3>(SolidRegistry<3>&,
+                                     const std::shared_ptr<const MaterialRegistry<3>>&);
 
 }  // namespace lockstep

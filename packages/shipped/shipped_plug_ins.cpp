@@ -14,23 +14,19 @@
 #include "strategies/register_strategies.hpp"
 
 namespace lockstep {
+namespace {
 
 template <int dim>
-std::shared_ptr<InterfaceRegistry<dim>> shipped_interface_models() {
-  auto interfaces = std::make_shared<InterfaceRegistry<dim>>("interface model");
-  register_interfaces<dim>(*interfaces);
-  return interfaces;
-}
-
-template <int dim>
-Registries<dim> shipped_plug_ins(std::shared_ptr<const InterfaceRegistry<dim>> interfaces) {
+Registries<dim> shipped() {
   Registries<dim> registries;
-  if (!interfaces)
-    interfaces = shipped_interface_models<dim>();
+  const auto interfaces = registries.template add_part<InterfaceRegistry<dim>>("interface model");
+  register_interfaces<dim>(*interfaces);
   register_mac<dim>(registries.fluids, interfaces);
   registries.domains["mac"] = domain_parameters<dim>;
   register_rigid<dim>(registries.solids);
-  register_deformable<dim>(registries.solids);
+  const auto materials = registries.template add_part<MaterialRegistry<dim>>("material");
+  register_materials<dim>(*materials);
+  register_deformable<dim>(registries.solids, materials);
   register_lines<dim>(registries.solids);
   register_mixed_face<dim>(registries.couplings);
   register_flux<dim>(registries.couplings);
@@ -41,9 +37,10 @@ Registries<dim> shipped_plug_ins(std::shared_ptr<const InterfaceRegistry<dim>> i
   return registries;
 }
 
-template std::shared_ptr<InterfaceRegistry<2>> shipped_interface_models<2>();
-template std::shared_ptr<InterfaceRegistry<3>> shipped_interface_models<3>();
-template Registries<2> shipped_plug_ins<2>(std::shared_ptr<const InterfaceRegistry<2>>);
-template Registries<3> shipped_plug_ins<3>(std::shared_ptr<const InterfaceRegistry<3>>);
+}  // namespace
+
+PlugIns shipped_plug_ins() {
+  return {shipped<2>(), shipped<3>()};
+}
 
 }  // namespace lockstep

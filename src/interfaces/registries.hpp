@@ -94,6 +94,34 @@ struct Registries {
   std::map<std::string, std::function<std::vector<TypedSchema>()>> joints;
   /// Schema of the "Domain" list, by the name of the fluid whose domain it is.
   std::map<std::string, std::function<ParameterList()>> domains;
+  /// Registries of what plug-ins are put together from, of types that their packages define:
+  /// materials of soft bodies, interface models of a liquid. Copies of this object share them.
+  std::vector<std::shared_ptr<NamedPlugIns>> parts;
+
+  /// Adds an empty registry of parts.
+  template <typename Part>
+  std::shared_ptr<Part> add_part(const std::string& kind) {
+    auto part = std::make_shared<Part>(kind);
+    parts.push_back(part);
+    return part;
+  }
+  /// The registry of parts of this type. Throws InputError if the program has none.
+  template <typename Part>
+  Part& part() const {
+    for (const auto& candidate : parts) {
+      if (auto* const found = dynamic_cast<Part*>(candidate.get()))
+        return *found;
+    }
+    throw InputError("This program has no plug-ins of the kind that is to be added to.");
+  }
+  /// All registries, of plug-ins and of their parts.
+  std::vector<const NamedPlugIns*> all() const {
+    std::vector<const NamedPlugIns*> every{&fluids,   &solids,     &articulations, &couplings,
+                                           &contacts, &strategies, &observers};
+    for (const auto& one : parts)
+      every.push_back(one.get());
+    return every;
+  }
 };
 
 }  // namespace lockstep

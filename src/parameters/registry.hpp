@@ -11,11 +11,26 @@
 
 namespace lockstep {
 
+/// A registry of any kind, for lists of what there is.
+class NamedPlugIns {
+ public:
+  virtual ~NamedPlugIns() = default;
+  /// The kind as it appears in messages: "fluid", "solid".
+  virtual const std::string& kind() const = 0;
+  /// Names and docstrings in order of registration.
+  virtual std::vector<std::pair<std::string, std::string>> documented() const = 0;
+
+ protected:
+  NamedPlugIns() = default;
+  NamedPlugIns(const NamedPlugIns&) = default;
+  NamedPlugIns& operator=(const NamedPlugIns&) = default;
+};
+
 /// The plug-ins of one kind, chosen by name. Filled by explicit calls of `add` from the program
 /// that wants them; nothing registers itself. Arguments after the parameters are passed to every
 /// factory.
 template <typename Base, typename... Args>
-class Registry {
+class Registry : public NamedPlugIns {
  public:
   using ValidParameters = std::function<ParameterList()>;
   using Factory = std::function<std::unique_ptr<Base>(const ParameterList&, Args...)>;
@@ -26,7 +41,6 @@ class Registry {
     Factory factory;
   };
 
-  /// `kind` as it appears in messages: "fluid", "solid".
   explicit Registry(std::string kind) : kind_(std::move(kind)) {}
 
   /// Throws InputError if the name is taken.
@@ -58,7 +72,13 @@ class Registry {
   }
 
   bool contains(const std::string& name) const { return find(name) != nullptr; }
-  const std::string& kind() const { return kind_; }
+  const std::string& kind() const override { return kind_; }
+  std::vector<std::pair<std::string, std::string>> documented() const override {
+    std::vector<std::pair<std::string, std::string>> all;
+    for (const Plugin& plugin : plugins_)
+      all.emplace_back(plugin.name, plugin.documentation);
+    return all;
+  }
   /// Iterates in order of registration.
   auto begin() const { return plugins_.begin(); }
   auto end() const { return plugins_.end(); }

@@ -9,7 +9,6 @@
 #include "parameters/mistakes.hpp"
 #include "scenes/copies.hpp"
 #include "scenes/defaults.hpp"
-#include "scenes/include.hpp"
 
 namespace lockstep {
 namespace {
@@ -18,30 +17,6 @@ bool concerns_the_language(const std::string& setting) {
   const std::string path = setting.substr(0, setting.find('='));
   return path.rfind("Constants/", 0) == 0 || path.rfind("Defaults/", 0) == 0 ||
          (path.rfind("Solids/", 0) == 0 && path.find("/Copies/") != std::string::npos);
-}
-
-bool is_include(const std::string& setting) {
-  return trimmed(setting.substr(0, setting.find('='))) == "Include";
-}
-
-/// Merges what the document includes; what `--set "Include=FILE"` names goes before the document
-/// itself, as in a file that includes both, and paths are relative to the scene.
-void include_all(Document& document, std::vector<std::string>& settings, const Communicator& comm) {
-  include_scenes(document, comm);
-  const auto others = std::stable_partition(settings.begin(), settings.end(), is_include);
-  if (others == settings.begin())
-    return;
-  Document whole{ParameterList(document.list.name()), {document.source.file, {}}};
-  for (auto setting = settings.begin(); setting != others; ++setting) {
-    Document included{ParameterList(), {document.source.file, {}}};
-    included.list.set("Include", ParameterArray<std::string>());  // one path is such an array, too
-    set_unchecked(included, *setting);
-    include_scenes(included, comm);
-    merge(whole, "", included);
-  }
-  settings.erase(settings.begin(), others);
-  merge(whole, "", document);
-  document = std::move(whole);
 }
 
 std::string text_of(const ParameterEntry& entry) {
@@ -115,8 +90,7 @@ int scene_dimension(const Document& document) {
 }
 
 void expand_scene(Document& document, std::vector<std::string>& settings,
-                  const std::vector<TypedSchema>& solid_types, const Communicator& comm) {
-  include_all(document, settings, comm);
+                  const std::vector<TypedSchema>& solid_types) {
   const auto others =
       std::stable_partition(settings.begin(), settings.end(), concerns_the_language);
   for (auto setting = settings.begin(); setting != others; ++setting)

@@ -2,20 +2,18 @@
 #include <string>
 #include <vector>
 
-#include "base/communicator.hpp"
 #include "parameters/parameter_list.hpp"
 #include "parameters/source.hpp"
 
 namespace lockstep {
 
-/// Turns a scene as written (read with FormulaPolicy::kept) into one of plain parameters: merges
-/// the scenes that it includes, takes the `--set` assignments that concern "Include", "Constants",
-/// "Defaults" and "Copies" out of `settings`, gives solids their defaults, makes their copies, and
-/// puts numbers in the place of all formulas. The lists "Include", "Constants", "Defaults" and
-/// "Copies" are gone then. `solid_types`: all that a solid's "Type" may be. Throws InputError.
-/// Collective.
+/// Turns a scene as written (read with FormulaPolicy::kept, after `include_scenes`) into one of
+/// plain parameters: takes the `--set` assignments that concern "Constants", "Defaults" and
+/// "Copies" out of `settings`, gives solids their defaults, makes their copies, and puts numbers in
+/// the place of all formulas. The lists "Constants", "Defaults" and "Copies" are gone then.
+/// `solid_types`: all that a solid's "Type" may be. Throws InputError. Local.
 void expand_scene(Document& document, std::vector<std::string>& settings,
-                  const std::vector<TypedSchema>& solid_types, const Communicator& comm);
+                  const std::vector<TypedSchema>& solid_types);
 
 /// Returns the dimension, 2 or 3. Throws InputError if the scene says neither.
 int scene_dimension(const Document& document);

@@ -290,6 +290,10 @@ ParameterList scene_parameters(const Registries<dim>& registries, const std::str
   ParameterList scene("Scene");
   declare_between(scene, "Dimension", dim, 2, 3, "2 or 3.");
   declare(scene, "Title", "", "One line on what the scene shows.");
+  declare_optional<ParameterArray<std::string>>(
+      scene, "Plug-ins",
+      "Libraries of plug-ins that the scene wants, files relative to it: what they add (solids, "
+      "materials, strategies, observers, ...) can be named like what ships. --plug-in adds more.");
   declare_list(scene, "Domain", "The box that holds everything, its cells and its sides.") =
       registries.domains.at(is_known ? fluid : usual_fluid)();
   declare_typed_sublist(scene, "Fluid", "The fluid.", registries.fluids.schemas(), usual_fluid);

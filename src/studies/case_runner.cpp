@@ -11,7 +11,9 @@
 #include <thread>
 
 #include "base/errors.hpp"
+#include "base/regular_file.hpp"
 #include "output/atomic_file.hpp"
+#include "output/checksum.hpp"
 #include "output/folder_lock.hpp"
 #include "studies/case_files.hpp"
 #include "studies/child_process.hpp"
@@ -32,6 +34,18 @@ std::string executable_key(const std::string& simulate) {
   check_input(!error, "Cannot find the program '{}'; build it, or name it with --simulate.",
               simulate);
   return fmt::format("{}\n{} bytes, {}\n", simulate, size, time.time_since_epoch().count());
+}
+
+/// Identifies the libraries by what is in them.
+std::string libraries_key(const std::vector<std::string>& plug_ins) {
+  std::string key;
+  for (const std::string& file : plug_ins) {
+    std::string failure;
+    const std::string content = read_regular_file(file, failure);
+    check_input(failure.empty(), "Cannot read the plug-in '{}'.", file);
+    key += fmt::format("{} {:08x} {}\n", file, checksum_of(content), content.size());
+  }
+  return key;
 }
 
 std::string case_key(const StudyCase& study_case, const std::string& common) {
@@ -97,14 +111,16 @@ class Concurrency {
   std::map<std::size_t, int> running_;
 };
 
-std::vector<std::string> command_of(const StudyCase& study_case, const std::string& simulate,
+std::vector<std::string> command_of(const StudyCase& study_case, const RunnerOptions& options,
                                     const std::string& directory) {
   std::vector<std::string> command;
   if (study_case.ranks > 1)
     command = {"mpirun", "--oversubscribe", "-n", std::to_string(study_case.ranks)};
-  command.insert(command.end(), {simulate, study_case.scene_file, "--output", directory});
+  command.insert(command.end(), {options.simulate, study_case.scene_file, "--output", directory});
   for (const std::string& assignment : study_case.assignments)
     command.insert(command.end(), {"--set", assignment});
+  for (const std::string& library : options.plug_ins)
+    command.insert(command.end(), {"--plug-in", library});
   return command;
 }
 
@@ -162,7 +178,7 @@ CaseOutcome run_case(const StudyCase& study_case, const RunnerOptions& options,
   const std::string errors = outcome.directory + "/errors.txt";
   begin(log);
   const ChildResult result =
-      run_child(command_of(study_case, options.simulate, outcome.directory), log, errors);
+      run_child(command_of(study_case, options, outcome.directory), log, errors);
   outcome.n_at_a_time = end();
   outcome.exit_code = result.exit_code;
   outcome.seconds = result.wall_seconds;
@@ -195,7 +211,7 @@ std::vector<CaseOutcome> run_cases(
     const std::vector<StudyCase>& cases, const RunnerOptions& options,
     const std::function<void(std::size_t, const CaseOutcome&)>& report,
     const std::function<void(std::size_t, const std::string&)>& started) {
-  const std::string key = executable_key(options.simulate);
+  const std::string key = executable_key(options.simulate) + libraries_key(options.plug_ins);
   fs::create_directories(options.output_directory);
   const auto folder_lock = FolderLock::take(options.output_directory, options.seconds_to_wait);
   check_output(

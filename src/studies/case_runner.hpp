@@ -8,11 +8,12 @@
 namespace lockstep {
 
 struct RunnerOptions {
-  std::string simulate;          ///< the executable
-  std::string output_directory;  ///< runs go to its folder "runs"
-  int n_jobs = 1;                ///< cases at a time
-  bool fresh = false;            ///< do not re-use runs
-  double seconds_to_wait = 10;   ///< for runs that a killed study has left behind
+  std::string simulate;               ///< the executable
+  std::vector<std::string> plug_ins;  ///< libraries that it loads
+  std::string output_directory;       ///< runs go to its folder "runs"
+  int n_jobs = 1;                     ///< cases at a time
+  bool fresh = false;                 ///< do not re-use runs
+  double seconds_to_wait = 10;        ///< for runs that a killed study has left behind
 };
 
 /// Outcome of a case.

@@ -10,7 +10,7 @@ namespace {
 
 template <int dim>
 std::vector<std::string> undocumented_in_scenes() {
-  return undocumented(scene_parameters<dim>(shipped_plug_ins<dim>()));
+  return undocumented(scene_parameters<dim>(shipped_plug_ins().of<dim>()));
 }
 
 TEST(Documentation, NoParameterWithoutDocstring) {
@@ -19,7 +19,7 @@ TEST(Documentation, NoParameterWithoutDocstring) {
 }
 
 TEST(Documentation, NoPlugInWithoutDocstring) {
-  const Registries<3> registries = shipped_plug_ins<3>();
+  const Registries<3> registries = shipped_plug_ins().space;
   const auto check = [](const auto& registry) {
     for (const auto& plugin : registry) {
       EXPECT_FALSE(plugin.documentation.empty()) << registry.kind() << " " << plugin.name;

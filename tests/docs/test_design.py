@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "tests/house"))
 from check_layout import FLOORS, SIBLINGS, rooms  # noqa: E402
 
 PAGE = (ROOT / "docs/design.md").read_text()
-MOST_FILES = 41  # one of them the frame of two schemes of time
+MOST_FILES = 43  # three of them are the frame of two schemes of time and of programs that load plug-ins
 ARROW = re.compile(r" +(\S.*?) +-> (\S+): (\w+)$")
 SHIPPED = ROOT / "packages/shipped/shipped_plug_ins.cpp"
 SIDE = re.compile(r"\b(?:side_of|side)<(?:const )?(\w+)(?:<dim>)?>\(|virtual (?:const )?(\w+)<dim>\* \w+\(\)(?: const)? \{ return nullptr; \}")

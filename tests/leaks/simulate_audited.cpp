@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "leaks/leak_audit.hpp"
-#include "parameters/strict_xml.hpp"
+#include "programs/open_scene.hpp"
 #include "scenes/expand_scene.hpp"
 #include "shipped/shipped_plug_ins.hpp"
 #include "stepping/scene_file.hpp"
@@ -39,27 +39,28 @@ class Audited : public Interface {
 };
 
 template <int dim>
-std::shared_ptr<InterfaceRegistry<dim>> audited_interfaces() {
-  auto interfaces = std::make_shared<InterfaceRegistry<dim>>("interface model");
-  const auto all_shipped = shipped_interface_models<dim>();
-  for (const auto& shipped : *all_shipped)
-    interfaces->add(shipped.name, shipped.documentation, shipped.valid_parameters,
-                    [is_fractions = shipped.name == "volume of fluid"](
-                        const ParameterList& list,
-                        const MacDomain<dim>& domain) -> std::unique_ptr<InterfaceModel<dim>> {
-                      if (is_fractions)
-                        return std::make_unique<Audited<dim, VolumeOfFluid<dim>>>(
-                            domain, read_volume_of_fluid_parameters(list));
-                      return std::make_unique<Audited<dim, LevelSet<dim>>>(
-                          domain, read_level_set_parameters(list));
-                    });
+InterfaceRegistry<dim> audited(const InterfaceRegistry<dim>& all_shipped) {
+  InterfaceRegistry<dim> interfaces("interface model");
+  for (const auto& shipped : all_shipped)
+    interfaces.add(shipped.name, shipped.documentation, shipped.valid_parameters,
+                   [is_fractions = shipped.name == "volume of fluid"](
+                       const ParameterList& list,
+                       const MacDomain<dim>& domain) -> std::unique_ptr<InterfaceModel<dim>> {
+                     if (is_fractions)
+                       return std::make_unique<Audited<dim, VolumeOfFluid<dim>>>(
+                           domain, read_volume_of_fluid_parameters(list));
+                     return std::make_unique<Audited<dim, LevelSet<dim>>>(
+                         domain, read_level_set_parameters(list));
+                   });
   return interfaces;
 }
 
 template <int dim>
-int simulate(Document scene, const std::vector<std::string>& settings, const RunOptions& options,
+int simulate(Document scene, const Registries<dim>& registries,
+             const std::vector<std::string>& settings, const RunOptions& options,
              const Communicator& comm) {
-  const Registries<dim> registries = shipped_plug_ins<dim>(audited_interfaces<dim>());
+  auto& interfaces = registries.template part<InterfaceRegistry<dim>>();
+  interfaces = audited<dim>(interfaces);
   complete_scene(scene, settings, scene_parameters<dim>(registries, scene_fluid(scene, settings)),
                  comm);
   const Log log(comm, std::cout, LogLevel::quiet);
@@ -82,10 +83,11 @@ int run(int argc, char** argv, const Communicator& comm) {
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }
-  Document scene = read_xml(options.scene_file, comm, FormulaPolicy::kept);
-  expand_scene(scene, settings, shipped_plug_ins<3>().solids.schemas(), comm);
-  return scene_dimension(scene) == 2 ? simulate<2>(std::move(scene), settings, options, comm)
-                                     : simulate<3>(std::move(scene), settings, options, comm);
+  PlugIns plug_ins = shipped_plug_ins();
+  Document scene = open_scene(options.scene_file, {}, settings, plug_ins, comm);
+  return scene_dimension(scene) == 2
+             ? simulate<2>(std::move(scene), plug_ins.plane, settings, options, comm)
+             : simulate<3>(std::move(scene), plug_ins.space, settings, options, comm);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ class LinearElasticity : public Material<dim> {
   }
   Tensor<dim> stress(const Tensor<dim>& f) const override { return stress_of(strain_of(f)); }
   TensorDerivative<dim> stress_derivative(const Tensor<dim>&) const override { return derivative_; }
+  bool feels_rotations() const override { return true; }
 
  private:
   static Tensor<dim> strain_of(const Tensor<dim>& f) {

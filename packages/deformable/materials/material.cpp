@@ -16,32 +16,13 @@ LameConstants lame_constants(double youngs_modulus, double poisson_ratio) {
 }
 
 template <int dim>
-const std::vector<MaterialKind<dim>>& material_kinds() {
-  static const std::vector<MaterialKind<dim>> all{
-      {"corotated", "Linear in the stretch once the rotation is taken out; survives inversion.",
-       corotated<dim>},
-      {"neo-hookean", "Stable neo-Hookean rubber (Smith et al. 2018); survives inversion.",
-       neo_hookean<dim>},
-      {"st venant-kirchhoff", "Linear in Green's strain: large rotations, moderate strains.",
-       st_venant_kirchhoff<dim>},
-      {"linear", "Small strain: small displacements and rotations only.", linear_elasticity<dim>}};
-  return all;
+LameConstants Material<dim>::at_rest() const {
+  const TensorDerivative<dim> hooke = stress_derivative(Tensor<dim>::Identity());
+  constexpr int second = dim + 1;  // entry of F_11; 0 is that of F_00, 1 of F_10
+  return {hooke(0, second), hooke(1, 1)};
 }
 
-template <int dim>
-std::unique_ptr<Material<dim>> make_material(const std::string& name, const LameConstants& lame) {
-  std::string names;
-  for (const MaterialKind<dim>& kind : material_kinds<dim>()) {
-    if (kind.name == name)
-      return kind.make(lame);
-    names += (names.empty() ? "" : ", ") + kind.name;
-  }
-  throw InputError(fmt::format("There is no material \"{}\"; there are {}.", name, names));
-}
-
-template const std::vector<MaterialKind<2>>& material_kinds<2>();
-template const std::vector<MaterialKind<3>>& material_kinds<3>();
-template std::unique_ptr<Material<2>> make_material<2>(const std::string&, const LameConstants&);
-template std::unique_ptr<Material<3>> make_material<3>(const std::string&, const LameConstants&);
+template LameConstants Material<2>::at_rest() const;
+template LameConstants Material<3>::at_rest() const;
 
 }  // namespace lockstep

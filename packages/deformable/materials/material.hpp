@@ -35,6 +35,11 @@ class Material {
   virtual Tensor<dim> stress(const Tensor<dim>& f) const = 0;
   /// dP/dF [Pa].
   virtual TensorDerivative<dim> stress_derivative(const Tensor<dim>& f) const = 0;
+  /// Hooke's law of small strains, by which damping is scaled [Pa]. Default: that of
+  /// `stress_derivative` at rest along the first axis, and of shear in the first plane.
+  virtual LameConstants at_rest() const;
+  /// True if rotations strain it, so that they count from the start. Local.
+  virtual bool feels_rotations() const { return false; }
 
  protected:
   Material() = default;
@@ -68,19 +73,5 @@ std::unique_ptr<Material<dim>> neo_hookean(const LameConstants& lame);
 template <int dim>
 std::unique_ptr<Material<dim>> held_together(std::unique_ptr<Material<dim>> material,
                                              double stiffness);
-
-/// A law that scenes can name.
-template <int dim>
-struct MaterialKind {
-  std::string name, documentation;
-  std::unique_ptr<Material<dim>> (*make)(const LameConstants&) = nullptr;
-};
-/// All laws; the first is the default.
-template <int dim>
-const std::vector<MaterialKind<dim>>& material_kinds();
-
-/// Makes a material by its name; throws InputError for an unknown one.
-template <int dim>
-std::unique_ptr<Material<dim>> make_material(const std::string& name, const LameConstants& lame);
 
 }  // namespace lockstep

@@ -32,7 +32,7 @@ DeformableBody<2> flag(int n, double youngs_modulus, double stiffness_damping) {
     body.locked.push_back({fixed, fixed});
   }
   body.elements.push_back(
-      volume_elements<2>(mesh, make_material<2>("st venant-kirchhoff", lame),
+      volume_elements<2>(mesh, st_venant_kirchhoff<2>(lame),
                          {stiffness_damping * lame.mu, stiffness_damping * lame.lambda}));
   body.mass_elements = body.elements.back()->corners();
   for (std::size_t e = 0; e < mesh.elements.size(); ++e)

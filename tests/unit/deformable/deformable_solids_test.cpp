@@ -273,7 +273,7 @@ TEST(DeformableSolids, CheckpointRestoresBitForBit) {
 
 TEST(DeformableSolids, RegistryMakesOneModelOfAllBodies) {
   SolidRegistry<2> registry("solid");
-  register_deformable<2>(registry);
+  register_deformable<2>(registry, std::make_shared<MaterialRegistry<2>>(shipped_materials<2>()));
   const std::string disc =
       geometry("ball", number("Radius", "0.2")) + number("Density", "1") + material("linear");
   const NamedLists bodies{{"Left", body_list<2>(disc)}, {"Right", body_list<2>(disc)}};

@@ -31,7 +31,7 @@ struct Elements {
 
 template <int dim>
 void check_volume_forces() {
-  for (const auto& material : material_kinds<dim>()) {
+  for (const auto& material : shipped_materials<dim>()) {
     SCOPED_TRACE(material.name);
     const Elements<dim> elements(material.name);
     Nodes<dim> x = shaken<dim>(elements.mesh.vertices, 1.1, 0.1, 7);
@@ -64,7 +64,7 @@ TEST(VolumeElements, ForcesAreThoseOfTheEnergyAndHaveNoMomentum) {
 
 template <int dim>
 void check_stiffness() {
-  for (const auto& material : material_kinds<dim>()) {
+  for (const auto& material : shipped_materials<dim>()) {
     SCOPED_TRACE(material.name);
     const Elements<dim> elements(material.name);
     // Stretched a little, so that nothing has to be clamped.

@@ -37,6 +37,15 @@ inline std::string pinned(const std::string& lower, const std::string& upper,
                                          texts("Locked", directions)));
 }
 
+/// A law that ships, by its name.
+template <int dim>
+std::unique_ptr<Material<dim>> make_material(const std::string& name, const LameConstants& lame) {
+  ParameterList list;
+  list.set("Young's Modulus", lame.mu * (3 * lame.lambda + 2 * lame.mu) / (lame.lambda + lame.mu));
+  list.set("Poisson's Ratio", lame.lambda / (2 * (lame.lambda + lame.mu)));
+  return shipped_materials<dim>().create(name, list);
+}
+
 /// A body as a scene file has it.
 template <int dim>
 ParameterList body_list(const std::string& content) {

@@ -10,6 +10,7 @@
 #include "parameters/mistakes.hpp"
 #include "parameters/strict_xml.hpp"
 #include "scenes/expand_scene.hpp"
+#include "scenes/include.hpp"
 
 namespace lockstep::test {
 namespace {
@@ -24,7 +25,7 @@ Document expanded(const std::string& body, std::vector<std::string> settings = {
       "<ParameterList name=\"Scene\">\n<Parameter name=\"Dimension\" type=\"int\" value=\"2\"/>\n";
   Document document =
       read_xml_string(head + body + "</ParameterList>", "case.xml", FormulaPolicy::kept);
-  expand_scene(document, settings, solid_types, Tpetra::getDefaultComm());
+  expand_scene(document, settings, solid_types);
   return document;
 }
 
@@ -271,7 +272,8 @@ class Includes : public testing::Test {
   Document read(const std::string& name, std::vector<std::string> settings = {}) const {
     Document document =
         read_xml((folder_ / name).string(), Tpetra::getDefaultComm(), FormulaPolicy::kept);
-    expand_scene(document, settings, solid_types, Tpetra::getDefaultComm());
+    include_scenes(document, settings, Tpetra::getDefaultComm());
+    expand_scene(document, settings, solid_types);
     return document;
   }
   std::filesystem::path folder_;
@@ -323,6 +325,26 @@ TEST_F(Includes, WhatTheCommandLineIncludesWinsOverTheFile) {
     EXPECT_THAT(error.what(), HasSubstr("--set \"Include=none.xml\""));
     EXPECT_THAT(error.what(), HasSubstr((folder_ / "none.xml").filename().string()));
   }
+}
+
+TEST_F(Includes, PlugInsOfAllFilesAreOneList) {
+  const std::string one = "string", several = "Array(string)";
+  write("parts/base.xml",
+        parameter("Dimension", "int", "2") + parameter("Plug-ins", several, "{../lib/a.so, b.so}"));
+  write("scene.xml",
+        parameter("Include", "string", "parts/base.xml") + parameter("Plug-ins", one, "lib/c.so"));
+  const auto files = [this](const std::vector<std::string>& settings) {
+    std::vector<std::string> names;
+    for (const std::string& file : plug_in_files(read("scene.xml", settings)))
+      names.push_back(std::filesystem::path(file).lexically_relative(folder_).string());
+    return names;
+  };
+  EXPECT_THAT(files({}), ElementsAre("lib/c.so", "lib/a.so", "parts/b.so"));
+  EXPECT_THAT(files({"Plug-ins={d.so}"}), ElementsAre("d.so", "lib/a.so", "parts/b.so"));
+  write("scene.xml", parameter("Dimension", "int", "2") + parameter("Plug-ins", one, "lib/c.so"));
+  EXPECT_THAT(files({"Include=parts/base.xml"}), ElementsAre("lib/a.so", "parts/b.so", "lib/c.so"));
+  write("scene.xml", parameter("Dimension", "int", "2") + parameter("Plug-ins", "int", "1"));
+  EXPECT_THROW(files({}), InputError);
 }
 
 TEST_F(Includes, CirclesAreRefused) {

@@ -10,9 +10,9 @@
 #include "conformance/saddle_problem.hpp"
 #include "linear/matrix_rows.hpp"
 #include "solve/solver_file.hpp"
+#include "steepest_descent.hpp"
 #include "strategies/register_strategies.hpp"
 #include "support/world.hpp"
-#include "unit/strategies/steepest_descent.hpp"
 
 namespace lockstep::test {
 

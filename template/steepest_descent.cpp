@@ -1,4 +1,4 @@
-#include "unit/strategies/steepest_descent.hpp"
+#include "steepest_descent.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
@@ -6,7 +6,7 @@
 #include "linear/null_space.hpp"
 #include "strategies/common/pressure_inverse.hpp"
 
-namespace lockstep::test {
+namespace lockstep {
 
 ParameterList SteepestDescent::valid_parameters() {
   ParameterList list = common_strategy_parameters();
@@ -49,4 +49,4 @@ int SteepestDescent::correct(const BlockSystem& system, const CorrectionRequest&
   return n_iterations;
 }
 
-}  // namespace lockstep::test
+}  // namespace lockstep

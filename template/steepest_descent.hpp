@@ -2,9 +2,9 @@
 #include "strategies/common/refined_strategy.hpp"
 #include "strategies/common/strategy_parameters.hpp"
 
-namespace lockstep::test {
+namespace lockstep {
 
-/// The example of docs/tutorials/add-a-solver-strategy.md: preconditioned steepest descent on the
+/// A solver strategy of your own: preconditioned steepest descent on the
 /// Schur complement S = A + B C^-1 B^T, with the relaxation that minimises the error's energy.
 class SteepestDescent : public RefinedStrategy {
  public:
@@ -20,4 +20,4 @@ class SteepestDescent : public RefinedStrategy {
   double shortening_;
 };
 
-}  // namespace lockstep::test
+}  // namespace lockstep

@@ -1,0 +1,99 @@
+# The template's plug-ins, in the programs that are installed.
+set(library "${copy}/build/libmine.so")
+set(simulate "${prefix}/bin/simulate")
+set(piston "${copy}/piston.xml")
+
+# As in the driver that has them built in, to the last digit, on two ranks too.
+foreach(ranks 1 2)
+  run_step("The library on ${ranks} ranks" ${MPIEXEC} -np ${ranks} "${simulate}" --plug-in "${library}" "${piston}"
+           --output "${copy}/library-${ranks}")
+  foreach(table "bodies" "stroke of the piston")
+    expect_same("${copy}/run-${ranks}/${table}.csv" "${copy}/library-${ranks}/${table}.csv")
+  endforeach()
+endforeach()
+run_step("The list of plug-ins" "${simulate}" --plug-in "${library}" --list-plugins)
+foreach(line "solid: piston \\(2D\\)" "interface model: given level \\(2D\\)" "solver strategy: steepest-descent" "material: corotated")
+  expect("${line}")
+endforeach()
+
+# A strategy, by simulate and by solve.
+run_step("A system" "${simulate}" --plug-in "${library}" "${piston}" --output "${copy}/dumped" --steps 2
+         --set "Solver/Strategy/Type=steepest-descent" --dump-system 2:S2 "${copy}/system.h5")
+run_step("The strategy of the library" "${prefix}/bin/solve" "${copy}/system.h5" "${copy}/steepest-descent.xml"
+         --plug-in "${library}" --output "${copy}/solved")
+expect("steepest-descent +[1-9]")
+
+# A study, with the library and with the driver.
+run_step("A study with the library" "${prefix}/bin/converge" "${copy}/piston-study.xml" --plug-in "${library}"
+         --output "${copy}/study-library")
+run_step("A study of the driver" "${prefix}/bin/converge" "${copy}/piston-study.xml" --simulate "${copy}/build/simulate"
+         --output "${copy}/study-driver")
+foreach(how library driver)
+  file(STRINGS "${copy}/study-${how}/table.csv" rows)
+  if(NOT "${rows}" MATCHES "0\\.0545454545")
+    message(FATAL_ERROR "The study of the ${how} has: ${rows}")
+  endif()
+endforeach()
+
+# A material, in a project of four lines; its scene names the library. Without fibres it is the law that ships.
+set(material "${copy}/material")
+run_step("Configuring the material" ${CMAKE_COMMAND} -S "${material}" -B "${material}/build" -G "${GENERATOR}"
+         "-DCMAKE_PREFIX_PATH=${prefix}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+run_step("Building the material" ${CMAKE_COMMAND} --build "${material}/build")
+file(READ "${material}/fibres.xml" scene)
+string(REGEX REPLACE "\n[^\n]*(Plug-ins|Fibre)[^\n]*" "" scene "${scene}")
+string(REPLACE "\"fibres\"" "\"st venant-kirchhoff\"" scene "${scene}")
+file(WRITE "${copy}/flesh.xml" "${scene}")
+run_step("The law that ships" "${simulate}" "${copy}/flesh.xml" --output "${copy}/flesh")
+run_step("The material without fibres" "${simulate}" "${material}/fibres.xml" --output "${copy}/no-fibres"
+         --set "Solids/Strip/Material/Fibre Stiffness=0")
+run_step("The material" "${simulate}" "${material}/fibres.xml" --output "${copy}/fibres")
+expect_same("${copy}/flesh/bodies.csv" "${copy}/no-fibres/bodies.csv")
+file(STRINGS "${copy}/flesh/bodies.csv" soft)
+file(STRINGS "${copy}/fibres/bodies.csv" stiff)
+list(FILTER soft EXCLUDE REGEX "^#")
+list(GET soft 0 columns)
+string(REPLACE "," ";" columns "${columns}")
+list(FIND columns "y" height_column)
+list(GET soft -1 soft)
+list(GET stiff -1 stiff)
+foreach(name soft stiff)
+  string(REPLACE "," ";" row "${${name}}")
+  list(GET row ${height_column} ${name}_height)
+endforeach()
+# Its middle sinks by (rho - 1000) g L^2 / (3 E'), E' = E/(1 - nu^2) plus the fibres: 24 and 2.2 mm at rest, here still swinging.
+if(NOT soft_height LESS 0.588 OR NOT stiff_height GREATER 0.5956)
+  message(FATAL_ERROR "The strip hangs at ${soft_height} m, with fibres at ${stiff_height} m.")
+endif()
+
+if(HAS_MODULE)
+  run_step("Python" ${CMAKE_COMMAND} -E env "PYTHONPATH=${prefix}/lib/python3/dist-packages" "${PYTHON}"
+           "${CMAKE_CURRENT_LIST_DIR}/one_step.py" "${piston}" "${copy}/stepped" "${library}")
+  expect("1 step")
+  run_step("Python, of a scene that names a library" ${CMAKE_COMMAND} -E env
+           "PYTHONPATH=${prefix}/lib/python3/dist-packages" "${PYTHON}"
+           "${CMAKE_CURRENT_LIST_DIR}/one_step.py" "${material}/fibres.xml" "${copy}/stepped-fibres")
+  expect("1 step")
+endif()
+
+# Libraries that cannot be loaded, in one sentence each.
+function(bad_library name text)
+  file(WRITE "${copy}/${name}.c" "${text}")
+  run_step("Compiling ${name}" "${C_COMPILER}" -shared -fPIC -o "${copy}/${name}.so" "${copy}/${name}.c")
+endfunction()
+set(build "const struct { const char *headers, *compiler; int alignment; } lockstep_plug_in_build = ")
+bad_library(nothing "int nothing;")
+bad_library(other-version "${build}{\"0.0.9, headers 0\", \"1.0\", 16};")
+bad_library(unresolved "void missing_function(void); void (*pointer)(void) = missing_function;")
+file(COPY_FILE "${library}" "${copy}/twice.so")
+refuse_step(2 "There is no plug-in 'none.so'" "${simulate}" --plug-in none.so "${piston}")
+refuse_step(2 "is a folder" "${simulate}" --plug-in "${copy}" "${piston}")
+refuse_step(2 "piston.xml' cannot be loaded: .*invalid ELF header" "${simulate}" --plug-in "${piston}" "${piston}")
+refuse_step(2 "is no library of plug-ins" "${simulate}" --plug-in "${copy}/nothing.so" "${piston}")
+refuse_step(2 "was built for Lockstep 0.0.9, headers 0, compiler 1.0" "${simulate}" --plug-in "${copy}/other-version.so" "${piston}")
+refuse_step(2 "this program has no missing_function" "${simulate}" --plug-in "${copy}/unresolved.so" "${piston}")
+refuse_step(2 "twice.so' cannot be registered: The fluid \"column\" is registered twice" "${simulate}"
+            --plug-in "${library}" --plug-in "${copy}/twice.so" "${piston}")
+refuse_step(2 "There is no plug-in 'none.so'" "${prefix}/bin/solve" "${copy}/system.h5" "${copy}/steepest-descent.xml" --plug-in none.so)
+refuse_step(2 "Cannot read the plug-in 'none.so'" "${prefix}/bin/converge" "${copy}/piston-study.xml" --plug-in none.so
+            --output "${copy}/study-none")
