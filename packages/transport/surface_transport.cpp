@@ -220,6 +220,14 @@ double SurfaceTransport<dim>::advect_beside(const CarriedField<dim>& field, cons
 }
 
 template <int dim>
+bool SurfaceTransport<dim>::stays_clear(const Point<dim>& x, const Point<dim>& end,
+                                        double distance) const {
+  const Point<dim> a = interpolation_.physical(x), b = interpolation_.physical(end);
+  const Box<dim> box = widened<dim>(Box<dim>(a).extend(b), distance);
+  return interpolation_.nearby().reached().contains(box) && swept_bins_.clear(box);
+}
+
+template <int dim>
 std::optional<SurfacePoint<dim>> SurfaceTransport<dim>::passage(const Point<dim>& from,
                                                                 const Point<dim>& to) const {
   const SurfaceSnapshot<dim>& before = *surface_.before;
@@ -246,6 +254,8 @@ std::optional<Point<dim>> SurfaceTransport<dim>::follow(const Point<dim>& x) {
   const SurfaceSnapshot<dim>& before = *surface_.before;
   const SurfaceSnapshot<dim>& after = surface_.after ? *surface_.after : before;
   const double gap = clearance_of_rays * interpolation_.spacing();
+  if (stays_clear(x, ray.end, gap + 2 * interpolation_.nearby().tolerance()))
+    return ray.end;
   Point<dim> end = interpolation_.physical(ray.end);
   if (const auto met = passage(x, ray.end)) {
     const auto from = before.corners(met->simplex), to = after.corners(met->simplex);
