@@ -220,14 +220,34 @@ double SurfaceTransport<dim>::advect_beside(const CarriedField<dim>& field, cons
 }
 
 template <int dim>
+bool SurfaceTransport<dim>::stays_clear(const Point<dim>& x, const Point<dim>& end,
+                                        double distance) const {
+  const Point<dim> a = interpolation_.physical(x), b = interpolation_.physical(end);
+  const Box<dim> box = widened<dim>(Box<dim>(a).extend(b), distance);
+  return interpolation_.nearby().reached().contains(box) && swept_bins_.clear(box);
+}
+
+template <int dim>
 std::optional<SurfacePoint<dim>> SurfaceTransport<dim>::passage(const Point<dim>& from,
                                                                 const Point<dim>& to) const {
   const SurfaceSnapshot<dim>& before = *surface_.before;
   const SurfaceSnapshot<dim>& after = surface_.after ? *surface_.after : before;
   const Point<dim> a = interpolation_.physical(from), b = interpolation_.physical(to);
-  const double reach =
-      surface_displacement_ * interpolation_.spacing() + interpolation_.nearby().tolerance();
-  before.touching(widened<dim>(Box<dim>(a).extend(b), reach), candidates_);
+  const double tolerance = interpolation_.nearby().tolerance();
+  const Box<dim> way = widened<dim>(Box<dim>(a).extend(b), tolerance);
+  if (interpolation_.nearby().reached().contains(way)) {
+    candidates_.clear();
+    swept_bins_.visit(way, [&](const auto& list) {
+      for (const int s : list)
+        if (swept_[s].intersects(way))
+          candidates_.push_back(s);
+    });
+    std::sort(candidates_.begin(), candidates_.end());
+    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+  } else {
+    const double reach = surface_displacement_ * interpolation_.spacing() + tolerance;
+    before.touching(widened<dim>(Box<dim>(a).extend(b), reach), candidates_);
+  }
   return candidates_.empty() ? std::nullopt : swept_over<dim>(before, after, a, b, candidates_);
 }
 
@@ -246,6 +266,9 @@ std::optional<Point<dim>> SurfaceTransport<dim>::follow(const Point<dim>& x) {
   const SurfaceSnapshot<dim>& before = *surface_.before;
   const SurfaceSnapshot<dim>& after = surface_.after ? *surface_.after : before;
   const double gap = clearance_of_rays * interpolation_.spacing();
+  const double margin = gap + 2 * interpolation_.nearby().tolerance();
+  if (stays_clear(x, ray.end, margin))
+    return ray.end;
   Point<dim> end = interpolation_.physical(ray.end);
   if (const auto met = passage(x, ray.end)) {
     const auto from = before.corners(met->simplex), to = after.corners(met->simplex);
@@ -255,6 +278,8 @@ std::optional<Point<dim>> SurfaceTransport<dim>::follow(const Point<dim>& x) {
     for (int k = 0; k < dim; ++k)
       end += met->barycentric[k] * to[k];
     end += (in_front ? gap : -gap) * area_vector<dim>(to).normalized();
+  } else if (stays_clear(ray.end, ray.end, margin)) {
+    return ray.end;
   } else if (const auto closest = after.closest(end, gap)) {
     const Point<dim> away = end - closest->position;
     if (away.squaredNorm() == 0)

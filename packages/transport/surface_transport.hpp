@@ -78,6 +78,8 @@ class SurfaceTransport {
   Ray<dim> trace(const Point<dim>& x, std::optional<SurfacePoint<dim>>& hit);
   /// The first surface that passes over a point that moves on a line during the step.
   std::optional<SurfacePoint<dim>> passage(const Point<dim>& from, const Point<dim>& to) const;
+  /// True if no simplex comes within a distance [m] of the box of x and end during the step.
+  bool stays_clear(const Point<dim>& x, const Point<dim>& end, double distance) const;
   std::optional<SurfacePoint<dim>> hit_on_way(const Point<dim>& x, const Point<dim>& end) const;
   /// Looks up the value at the end of a ray from x.
   std::optional<double> fetch(const CarriedField<dim>& field, const Point<dim>& x, Ray<dim> ray,

@@ -20,6 +20,21 @@ std::optional<double> WeightedMean::value() const {
 }
 
 template <int dim>
+bool VisibleInterpolation<dim>::sees_all(SampleKind kind, const Point<dim>& x,
+                                         const Stencil<dim>& stencil) const {
+  // At a closed lower side the velocity is zero, whatever the field says.
+  if (kind != cell_centers && usable_.closed_below[kind] && x[kind] < 1)
+    return false;
+  const char* usable = kind == cell_centers ? usable_.cells : usable_.faces[kind];
+  for (const int id : stencil.id)
+    if (id != Stencil<dim>::wall_sample && (id < 0 || !usable[id]))
+      return false;
+  const Point<dim> offset = sample_offset<dim>(kind);
+  const Point<dim> lower = (x - offset).array().floor().matrix() + offset;
+  return nearby_->clear(physical(Box<dim>(lower, lower + Point<dim>::Ones())));
+}
+
+template <int dim>
 template <typename Function>
 void VisibleInterpolation<dim>::for_each_sample(SampleKind kind, const Point<dim>& x,
                                                 const Function& f) const {
@@ -46,6 +61,9 @@ void VisibleInterpolation<dim>::look(int axis, const Point<dim>& x, const double
   Sight& sight = sight_[axis];
   sight.visible = {};
   sight.hidden.clear();
+  const Stencil<dim> stencil = lattice_.locate(axis, x);
+  if (sees_all(axis, x, stencil))
+    return sight.visible.add(1, interpolate<dim>(stencil, field));
   for_each_sample(axis, x, [&](const StencilCorner<dim>& corner, const auto& hit) {
     if (hit)
       sight.hidden.push_back({corner.weight, *hit});
@@ -100,6 +118,9 @@ std::optional<double> VisibleInterpolation<dim>::velocity(int axis, const Point<
 
 template <int dim>
 std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x, const double* field) {
+  const Stencil<dim> stencil = lattice_.locate(cell_centers, x);
+  if (sees_all(cell_centers, x, stencil))
+    return interpolate<dim>(stencil, field);
   WeightedMean mean;
   for_each_sample(cell_centers, x, [&](const StencilCorner<dim>& corner, const auto& hit) {
     if (!hit && corner.id >= 0 && usable_.cells[corner.id])
@@ -110,9 +131,18 @@ std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x, con
 
 template <int dim>
 Point<dim> VisibleInterpolation<dim>::velocity_at(const Point<dim>& x, const Velocity& field) {
+  Point<dim> result;
+  const auto stencils = lattice_.locate_faces(x);
+  bool all = true;
+  for (int a = 0; a < dim && all; ++a)
+    all = sees_all(a, x, stencils[a]);
+  if (all) {
+    for (int a = 0; a < dim; ++a)
+      result[a] = interpolate<dim>(stencils[a], field[a]);
+    return result;
+  }
   for (int a = 0; a < dim; ++a)
     look(a, x, field[a]);
-  Point<dim> result;
   std::optional<Point<dim>> fallback;
   for (int a = 0; a < dim; ++a) {
     const auto component = seen_velocity(a);

@@ -73,6 +73,8 @@ class VisibleInterpolation {
   Point<dim> nearest_surface_velocity(const Point<dim>& x) const;
 
  private:
+  /// True if all samples of a stencil around x count and no simplex comes between them.
+  bool sees_all(SampleKind kind, const Point<dim>& x, const Stencil<dim>& stencil) const;
   /// Calls f(sample, what hides it) for the samples around x that count.
   template <typename Function>
   void for_each_sample(SampleKind kind, const Point<dim>& x, const Function& f) const;

@@ -69,11 +69,12 @@ class Mover {
         rays = follow(particles.data() + first, n);
       for (int i = 0; i < n; ++i) {
         const Particle<dim> particle = particles[first + i];
+        const bool near = is_near(particle);
         std::optional<Point<dim>> end;
-        if (by_strips && !needs_care(particle))
+        if (by_strips && (!near || passes_freely(particle, rays, i)))
           end = frame_.block->place(rays.end, i);
         else
-          end = follow_single(particle);
+          end = follow_single(place(particle), near);
         if (!end || !stays_in_domain(*end))
           continue;
         if (keep<dim>(domain_.grid, begin_, *end, particle, particles[n_kept]))
@@ -93,8 +94,15 @@ class Mover {
       x[a] += begin_[a];
     return x;
   }
-  bool needs_care(const Particle<dim>& particle) const {
+  bool is_near(const Particle<dim>& particle) const {
     return is_near_surface_ && frame_.near_surface->is_near(place(particle));
+  }
+  /// True if no surface comes near the way that strips have found, though it may come near others.
+  bool passes_freely(const Particle<dim>& particle, const StripRays<dim>& rays, int i) const {
+    const Box<dim> way = Box<dim>(place(particle))
+                             .extend(frame_.block->place(rays.middle, i))
+                             .extend(frame_.block->place(rays.end, i));
+    return frame_.near_surface->clear(way, true);
   }
   StripRays<dim> follow(const Particle<dim>* particles, int n) const {
     StripPoints<dim> start;
@@ -103,9 +111,8 @@ class Mover {
         start[a][i] = particles[std::min(i, n - 1)].x[a] + frame_.block->margin(a);
     return frame_.block->follow(start, 1);
   }
-  std::optional<Point<dim>> follow_single(const Particle<dim>& particle) {
-    const Point<dim> x = place(particle);
-    if (needs_care(particle)) {
+  std::optional<Point<dim>> follow_single(const Point<dim>& x, bool near) {
+    if (near) {
       const auto end = frame_.near_surface->follow(x);
       n_given_up_ += !end;
       return end;
