@@ -107,7 +107,7 @@ def swing_in_tank(half_width, depth, end=9.0, dt=0.01):
     known = np.column_stack([-potential[:, surface], slope[:, disc] @ normal[disc, 1]])  # by potentials at the surface and x'
     unknown = np.linalg.solve(np.where(surface, -slope, potential), known)
     rise, rise_by_disc = unknown[surface][:, :-1], unknown[surface][:, -1]
-    push = 2 * (length[disc] * normal[disc, 1]) @ unknown[disc]  # of both halves
+    push = 2 * (length[disc] * normal[disc, 1]) @ unknown[disc]  # both halves of the disc
     inertia, n = MASS + push[-1], surface.sum()
 
     def rates(state):
