@@ -15,6 +15,17 @@ def chain(step, end=2., impulses="two halves", turn=100.):
     return vacuum(CHAIN, CHAIN_JOINTS, step, end, impulses, turn)
 
 
+def hanging_chain(n_links, in_water):
+    """.8 m of boxes on hinges in a tank of 32 x 32 cells, pulled aside by gravity that leans a little."""
+    length = .8 / n_links
+    solids = {f"L{k}": {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (.02, .9 * length)}, "Density": 3000.,
+                        "Position": (.5, .9 - (k + .5) * length), "Seen by Fluid": in_water} for k in range(n_links)}
+    joints = {f"J{k}": joint("hinge", (f"L{k - 1}" if k else "space", f"L{k}"), (.5, .9 - k * length)) for k in range(n_links)}
+    return {"Dimension": 2, "Domain": {"Cells": (32, 32)}, "Fluid": {"Density": 1000., "Gravity": (1., -9.8)}, "Contact": {"Type": "none"},
+            "Coupling": {"Type": "mixed face"}, "Solids": solids, "Joints": joints, "Time": {"Fixed Step": .002, "End": 1.},
+            "Output": {"Frames": False}}
+
+
 def energies(history):
     return np.array([row["solid_kinetic_energy"] for row in history])
 
