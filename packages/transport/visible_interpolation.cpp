@@ -20,8 +20,15 @@ std::optional<double> WeightedMean::value() const {
 }
 
 template <int dim>
-bool VisibleInterpolation<dim>::sees_all(SampleKind kind, const Point<dim>& x,
-                                         const Stencil<dim>& stencil) const {
+bool VisibleInterpolation<dim>::is_clear(SampleKind kind, const Point<dim>& x) const {
+  const Point<dim> offset = sample_offset<dim>(kind);
+  const Point<dim> lower = (x - offset).array().floor().matrix() + offset;
+  return nearby_->clear(physical(Box<dim>(lower, lower + Point<dim>::Ones())));
+}
+
+template <int dim>
+bool VisibleInterpolation<dim>::all_count(SampleKind kind, const Point<dim>& x,
+                                          const Stencil<dim>& stencil) const {
   // At a closed lower side the velocity is zero, whatever the field says.
   if (kind != cell_centers && usable_.closed_below[kind] && x[kind] < 1)
     return false;
@@ -29,14 +36,12 @@ bool VisibleInterpolation<dim>::sees_all(SampleKind kind, const Point<dim>& x,
   for (const int id : stencil.id)
     if (id != Stencil<dim>::wall_sample && (id < 0 || !usable[id]))
       return false;
-  const Point<dim> offset = sample_offset<dim>(kind);
-  const Point<dim> lower = (x - offset).array().floor().matrix() + offset;
-  return nearby_->clear(physical(Box<dim>(lower, lower + Point<dim>::Ones())));
+  return true;
 }
 
 template <int dim>
 template <typename Function>
-void VisibleInterpolation<dim>::for_each_sample(SampleKind kind, const Point<dim>& x,
+void VisibleInterpolation<dim>::for_each_sample(SampleKind kind, const Point<dim>& x, bool clear,
                                                 const Function& f) const {
   const auto samples = lattice_.corners(kind, x);
   const Point<dim> eye = physical(x);
@@ -49,7 +54,7 @@ void VisibleInterpolation<dim>::for_each_sample(SampleKind kind, const Point<dim
       corners[a][k] = place[a];
   }
   typename NearbySurface<dim>::Hits hits;
-  if (!nearby_->clear(around))
+  if (!clear)
     nearby_->look_around(eye, around, corners, hits);
   for (int k = 0; k < 1 << dim; ++k)
     if (samples[k].weight != 0)
@@ -61,10 +66,13 @@ void VisibleInterpolation<dim>::look(int axis, const Point<dim>& x, const double
   Sight& sight = sight_[axis];
   sight.visible = {};
   sight.hidden.clear();
-  const Stencil<dim> stencil = lattice_.locate(axis, x);
-  if (sees_all(axis, x, stencil))
-    return sight.visible.add(1, interpolate<dim>(stencil, field));
-  for_each_sample(axis, x, [&](const StencilCorner<dim>& corner, const auto& hit) {
+  const bool clear = is_clear(axis, x);
+  if (clear) {
+    const Stencil<dim> stencil = lattice_.locate(axis, x);
+    if (all_count(axis, x, stencil))
+      return sight.visible.add(1, interpolate<dim>(stencil, field));
+  }
+  for_each_sample(axis, x, clear, [&](const StencilCorner<dim>& corner, const auto& hit) {
     if (hit)
       sight.hidden.push_back({corner.weight, *hit});
     else if (corner.id == Stencil<dim>::wall_sample ||
@@ -118,11 +126,14 @@ std::optional<double> VisibleInterpolation<dim>::velocity(int axis, const Point<
 
 template <int dim>
 std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x, const double* field) {
-  const Stencil<dim> stencil = lattice_.locate(cell_centers, x);
-  if (sees_all(cell_centers, x, stencil))
-    return interpolate<dim>(stencil, field);
+  const bool clear = is_clear(cell_centers, x);
+  if (clear) {
+    const Stencil<dim> stencil = lattice_.locate(cell_centers, x);
+    if (all_count(cell_centers, x, stencil))
+      return interpolate<dim>(stencil, field);
+  }
   WeightedMean mean;
-  for_each_sample(cell_centers, x, [&](const StencilCorner<dim>& corner, const auto& hit) {
+  for_each_sample(cell_centers, x, clear, [&](const StencilCorner<dim>& corner, const auto& hit) {
     if (!hit && corner.id >= 0 && usable_.cells[corner.id])
       mean.add(corner.weight, field[corner.id]);
   });
@@ -131,18 +142,9 @@ std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x, con
 
 template <int dim>
 Point<dim> VisibleInterpolation<dim>::velocity_at(const Point<dim>& x, const Velocity& field) {
-  Point<dim> result;
-  const auto stencils = lattice_.locate_faces(x);
-  bool all = true;
-  for (int a = 0; a < dim && all; ++a)
-    all = sees_all(a, x, stencils[a]);
-  if (all) {
-    for (int a = 0; a < dim; ++a)
-      result[a] = interpolate<dim>(stencils[a], field[a]);
-    return result;
-  }
   for (int a = 0; a < dim; ++a)
     look(a, x, field[a]);
+  Point<dim> result;
   std::optional<Point<dim>> fallback;
   for (int a = 0; a < dim; ++a) {
     const auto component = seen_velocity(a);

@@ -73,11 +73,13 @@ class VisibleInterpolation {
   Point<dim> nearest_surface_velocity(const Point<dim>& x) const;
 
  private:
-  /// True if all samples of a stencil around x count and no simplex comes between them.
-  bool sees_all(SampleKind kind, const Point<dim>& x, const Stencil<dim>& stencil) const;
-  /// Calls f(sample, what hides it) for the samples around x that count.
+  /// True if no simplex comes near the box of samples around x.
+  bool is_clear(SampleKind kind, const Point<dim>& x) const;
+  /// True if all samples of the stencil around x have values that count.
+  bool all_count(SampleKind kind, const Point<dim>& x, const Stencil<dim>& stencil) const;
+  /// Calls f(sample, what hides it) for the samples around x that count. `clear`: `is_clear` of x.
   template <typename Function>
-  void for_each_sample(SampleKind kind, const Point<dim>& x, const Function& f) const;
+  void for_each_sample(SampleKind kind, const Point<dim>& x, bool clear, const Function& f) const;
   struct Hidden {
     double weight = 0;
     SurfacePoint<dim> hit;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "geometry/generators.hpp"
+#include "transport/visible_interpolation.hpp"
 #include "transport_cases.hpp"
 
 namespace lockstep::test {
@@ -293,6 +294,35 @@ TEST(TransportNearSurfaces, LeftOverFacesTakeTheSurfaceVelocity) {
     const Point<2> x = tank.grid.face_center(1, c);
     EXPECT_NEAR(moved[1][c], x == Point<2>(9.5, 8) ? 2 : 0, 1e-12) << x.transpose();
   });
+}
+
+/// Far from the plate values are interpolated plainly, but for those that do not count: a sample
+/// that has none, and the face on a closed lower side, whose velocity is zero whatever is stored.
+TEST(TransportNearSurfaces, WhatDoesNotCountIsLeftOutFarFromThem) {
+  FullTank<2> tank(cube<2>(16, false), alone());
+  const auto plate = snapshot<2>(
+      placed<2>(plate_surface<2>(Point<2>(0, .2), 0, 1. / 16), 0, Point<2>(.8, .5)), false);
+  move<2>(tank, plate, plate, 1);
+  const SampleLattice<2> lattice(tank.grid);
+  const int n = tank.grid.n_stored_cells();
+  std::vector<char> all(n, 1), some(n, 1);
+  std::vector<double> field(n, 1);
+  const auto id_at = [&](SampleKind kind, const Point<2>& x) {
+    return lattice.locate(kind, x).id[0];
+  };
+  const Point<2> bad_center(4.5, 4.5), bad_face(6, 4.5), on_side(0, 4.5);
+  for (const int id : {id_at(cell_centers, bad_center), id_at(0, bad_face)}) {
+    some[id] = 0;
+    field[id] = 1e9;
+  }
+  UsableSamples<2> usable{{some.data(), all.data()}, some.data(), {true, false}};
+  VisibleInterpolation<2> interpolation(tank.grid, lattice, usable, tank.surface, 0,
+                                        tank.kept.of(plate, tank.grid, 4));
+  EXPECT_EQ(interpolation.scalar(Point<2>(4.7, 4.8), field.data()), 1);
+  const std::array<const double*, 2> velocity{field.data(), field.data()};
+  EXPECT_EQ(interpolation.velocity(0, Point<2>(6.2, 4.7), velocity), 1);
+  field[id_at(0, on_side)] = 1e9;
+  EXPECT_DOUBLE_EQ(*interpolation.velocity(0, Point<2>(.25, 4.5), velocity), .25);
 }
 
 }  // namespace
