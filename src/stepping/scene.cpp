@@ -346,7 +346,7 @@ SceneOptions scene_options(const ParameterList& scene) {
   options.time.cfl = time.get<double>("CFL");
   options.time.largest_step = time.get<double>("Largest Step");
   options.time.most_steps = time.get<int>("Steps");
-  options.time.order = time.get<int>("Order in Time");
+  options.step.order = time.get<int>("Order in Time");
   const auto& correction = time.get<std::string>("Pressure Correction");
   options.step.prediction.incremental_pressure = correction != "non-incremental";
   options.step.prediction.rotational_pressure = correction == "rotational";

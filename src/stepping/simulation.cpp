@@ -111,8 +111,8 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
   }
   ScopedStage stage(timers_, "start");
   scene_options_.step.energy_budget = observers_.want_energy();
-  scheme_ = make_time_scheme<dim>(scene_options_.time.order, components_, scene_options_.step,
-                                  scene_options_.time.start, timers_);
+  scheme_ = std::make_unique<TimeScheme<dim>>(components_, scene_options_.step,
+                                              scene_options_.time.start, timers_);
   check_names();
   if (!observers_.empty())
     ObserverTables<dim>::try_out(registries.observers, scene.sublist("Observers"),

@@ -9,7 +9,6 @@ struct TimeOptions {
   double fixed_step = 0;             ///< [s]; 0: from the CFL number
   double cfl = 1, largest_step = 1;  ///< [1], [s]
   long long most_steps = 0;          ///< 0: no limit
-  int order = 1;                     ///< order in time of the scheme that moves solids and fluid
 };
 
 /// Part of the run that `time` [s] is of its time, or `steps` of its steps, whichever is more [1].

@@ -1,6 +1,7 @@
 #include "stepping/step/advection_velocity.hpp"
 
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
 #include "linear/null_space.hpp"
 
@@ -8,7 +9,7 @@ namespace lockstep {
 
 template <int dim>
 AdvectionReport AdvectionVelocity<dim>::make(const StepTime& step, const std::string& name,
-                                             bool is_projected) {
+                                             bool is_projected, double negligible) {
   auto& fluid = *components_.fluid;
   auto& coupling = *components_.coupling;
   const bool has_no_divergence = fluid.begin_advection_velocity(step.dt);
@@ -23,8 +24,9 @@ AdvectionReport AdvectionVelocity<dim>::make(const StepTime& step, const std::st
   const double incompatibility = relative_part_removed(blocks.null_space, *solution.rhs.pressure);
   solution.unknowns.pressure = make_vector(fluid.pressure_map());
   components_.strategy->prepare(blocks);
-  gas_.solve_advection(step.dt, blocks, solve_request(fluid, name, tolerance_, step, step.dt),
-                       solution);
+  SolveRequest request = solve_request(fluid, name, tolerance_, step, step.dt);
+  request.negligible_pressure_residual = std::max(request.negligible_pressure_residual, negligible);
+  gas_.solve_advection(step.dt, blocks, request, solution);
   gas_.project(*solution.unknowns.pressure, solution.gas_pressure);
   return {solution.report, incompatibility};
 }

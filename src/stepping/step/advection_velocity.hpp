@@ -20,8 +20,11 @@ class AdvectionVelocity {
       : components_(components), system_(system), gas_(components), tolerance_(tolerance) {}
 
   /// Leaves u_ADV in u*; the solids have moved. `is_projected`: u^n has no divergence on the
-  /// present cells. Throws SolveError. Collective.
-  AdvectionReport make(const StepTime& step, const std::string& name, bool is_projected);
+  /// present cells. `negligible`: 2-norm of a divergence that may stay [m^dim/s]. Throws
+  /// SolveError. Collective.
+  AdvectionReport make(const StepTime& step, const std::string& name, bool is_projected,
+                       double negligible = 0);
+  double tolerance() const { return tolerance_; }
 
  private:
   Components<dim>& components_;

@@ -15,66 +15,61 @@
 
 namespace lockstep {
 
+namespace {
+
 /// 1 to 3: held dofs have their mean velocities, so that positions follow their scripts.
 template <int dim>
-StepContext<dim> PaperStep<dim>::positions(const StepTime& step) const {
+StepContext<dim> of_positions(const StepParts<dim>& parts, const StepTime& step) {
   return {step,        "S1", step.begin,
-          step.dt / 2, true, components_.solids->constraints(step.begin, step.end())};
+          step.dt / 2, true, parts.components.solids->constraints(step.begin, step.end())};
 }
 
 /// 5 to 7: held dofs have their velocities at the end of the step.
 template <int dim>
-StepContext<dim> PaperStep<dim>::velocities(const StepTime& step,
-                                            const StartImpulse& joints) const {
+StepContext<dim> of_velocities(const StepParts<dim>& parts, const StepTime& step,
+                               const StartImpulse& joints) {
   return {step,    "S2",  step.begin,
-          step.dt, false, components_.solids->constraints(step.end(), step.end()),
+          step.dt, false, parts.components.solids->constraints(step.end(), step.end()),
           joints};
 }
 
-template <int dim>
-StepReport<dim> PaperStep<dim>::advance(double dt, const std::function<void()>& between_stages) {
-  const auto run = [&](const std::string& name, const auto& stage) {
-    between_stages();
-    const ScopedStage timed(timers_, name);
-    return stage();
-  };
-  const StepTime step{time_, dt, last_dt_, n_steps_ + 1};
-  StageResults<dim> stages;
-  const bool is_projected = !this->begin(step) && last_dt_ > 0;
+}  // namespace
 
-  const StepContext<dim> half = positions(step);
-  if (components_.solids->has_unknowns())  // F1 serves S1 only
+template <int dim>
+StepReport<dim> paper_step(StepParts<dim>& parts, const StepTime& step, const StageRunner& run) {
+  auto& solids = *parts.components.solids;
+  StageResults<dim> stages;
+  const bool is_projected = !parts.begin(step) && step.last_dt > 0;
+
+  const StepContext<dim> half = of_positions(parts, step);
+  if (solids.has_unknowns())  // F1 serves S1 only
     stages.start = run("F1", [&] {
-      transport_.begin_prediction();
-      return prediction_.add_viscosity(half, prediction_.add_forces(half));
+      parts.transport.begin_prediction();
+      return parts.prediction.add_viscosity(half, parts.prediction.add_forces(half));
     });
-  between_stages();
-  stages.path = positions_.find(half, stages.start.viscous.solid_impulse);  // S1
-  run("solid motion", [&] { components_.solids->move(*stages.path.velocity, step.begin, dt); });
-  stages.advection = run("F2", [&] { return advection_.make(step, "F2", is_projected); });
+  run.pause();
+  stages.path = parts.positions.find(half, stages.start.viscous.solid_impulse);  // S1
+  run("solid motion", [&] { solids.move(*stages.path.velocity, step.begin, step.dt); });
+  stages.advection = run("F2", [&] { return parts.advection.make(step, "F2", is_projected); });
   run("F3 advection", [&] {
-    transport_.carry(step);
-    audit_.end_transport(step);
+    parts.transport.carry(step);
+    parts.audit.end_transport(step);
   });
-  const StepContext<dim> whole = velocities(step, stages.path.joints);
+  const StepContext<dim> whole = of_velocities(parts, step, stages.path.joints);
   run("F3 forces", [&] {
-    stages.forces = prediction_.add_forces(whole);
-    audit_.end_forces();
-    stages.friction = prediction_.add_viscosity(whole, stages.forces);
-    audit_.end_viscosity();
+    stages.forces = parts.prediction.add_forces(whole);
+    parts.audit.end_forces();
+    stages.friction = parts.prediction.add_viscosity(whole, stages.forces);
+    parts.audit.end_viscosity();
   });
   stages.end = run("S2", [&] {
-    stages.solids = solid_forces_.momentum(whole);
-    return solve_.velocities(whole, stages.solids, stages.friction.viscous.solid_impulse);
+    stages.solids = parts.solid_forces.momentum(whole);
+    return parts.solve.velocities(whole, stages.solids, stages.friction.viscous.solid_impulse);
   });
-  return run("end", [&] {  // F4
-    StepReport<dim> report = this->finish(whole, stages);
-    this->end(step);
-    return report;
-  });
+  return run("end", [&] { return parts.finish(whole, stages); });  // F4
 }
 
-template class PaperStep<2>;
-template class PaperStep<3>;
+template StepReport<2> paper_step(StepParts<2>&, const StepTime&, const StageRunner&);
+template StepReport<3> paper_step(StepParts<3>&, const StepTime&, const StageRunner&);
 
 }  // namespace lockstep

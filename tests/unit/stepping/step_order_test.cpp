@@ -6,7 +6,7 @@
 
 #include "mixedface/mixed_face_coupling.hpp"
 #include "recording.hpp"
-#include "stepping/step/paper_step.hpp"
+#include "stepping/step/time_scheme.hpp"
 #include "support/coupled_case.hpp"
 
 namespace lockstep::test {
@@ -34,7 +34,7 @@ FakeBody<2> plate() {
 
 struct Recorded {
   explicit Recorded(const FakeBox<2>& box, std::vector<FakeBody<2>> bodies = {plate()},
-                    bool with_contact = true, bool with_joints = false) {
+                    bool with_contact = true, bool with_joints = false, int order = 1) {
     const Communicator comm = Tpetra::getDefaultComm();
     components.fluid = std::make_unique<RecordingFluid>(box, comm, calls);
     Models<2> models;
@@ -46,7 +46,9 @@ struct Recorded {
     components.strategy = std::make_unique<RecordingStrategy>(calls);
     if (with_contact)
       components.contact = std::make_unique<RecordingContact>(calls);
-    scheme = std::make_unique<PaperStep<2>>(components, StepOptions(), 3, timers);
+    StepOptions options;
+    options.order = order;
+    scheme = std::make_unique<TimeScheme<2>>(components, options, 3, timers);
   }
   /// The calls of a step of .5 s.
   Calls step() {
@@ -58,7 +60,7 @@ struct Recorded {
   Calls calls;
   StageTimers timers;
   Components<2> components;
-  std::unique_ptr<PaperStep<2>> scheme;
+  std::unique_ptr<TimeScheme<2>> scheme;
 };
 
 long count(const Calls& calls, const std::string& call) {
@@ -84,6 +86,28 @@ TEST(StepOrder, IsThatOfSection7) {
                     "solids: forces over 0.5", "contact: velocities over 0.5", "solve: S2",
                     "contact: velocities over 0.5",                    // S2
                     "fluid: project", "fluid: u = u*", "solids: V"));  // F4
+  }
+  EXPECT_EQ(recorded.scheme->time(), 4);
+}
+
+/// Two kicks over half of the step, each with a solve that is kept, and a drift between them.
+TEST(StepOrder, OfKickDriftKick) {
+  Recorded recorded(tank(), {plate()}, true, false, 2);
+  for (int i = 0; i < 2; ++i) {
+    const std::string begin = fmt::format("solids: step from {} over 0.5", 3 + 0.5 * i);
+    const std::string contact = fmt::format("contact: step from {}", 3 + 0.5 * i);
+    EXPECT_THAT(recorded.step(),
+                ElementsAre(begin, contact, "fluid: u* = u", "fluid: forces over 0.25",  // kick
+                            "solids: forces over 0.25", "contact: velocities over 0.5",
+                            "solve: S1", "contact: velocities over 0.5", "fluid: project",
+                            "fluid: u = u*", "solids: V", "solids: midpoint of 0.25",  // drift
+                            "contact: positions over 0.5", "solids: move over 0.5",
+                            "fluid: u* to advect over 0.5", "solve: F2", "fluid: project",
+                            "fluid: advect over 0.5", "fluid: geometry",
+                            "fluid: populate_uncovered", "fluid: forces over 0.25",  // kick
+                            "solids: forces over 0.25", "contact: velocities over 0.5",
+                            "solve: S2", "contact: velocities over 0.5", "fluid: project",
+                            "fluid: u = u*", "solids: V"));
   }
   EXPECT_EQ(recorded.scheme->time(), 4);
 }
