@@ -137,6 +137,29 @@ class Drops(unittest.TestCase):
                 for momentum in column(history, "fluid_momentum_x")[1 : taken + 1]:
                     self.assertLess(abs(momentum - 1000 * volume), 1e-12 * 1000 * volume)
 
+    def test_what_falls_on_a_plate_pushes_it_once(self):
+        """A plate that may slide along x takes from a drop what the drop loses, with both orders in time; periodic along x, above a pool."""
+        sides = {f"x {end}": {"Type": "periodic"} for end in ("lower", "upper")}
+        plate = {"Type": "rigid body", "Geometry": {"Shape": "plate", "Size": (0., .3), "Normal": "x"}, "Surface Density": 8., "Position": (.8, .6),
+                 "Locked": ("y", "rotation")}
+        volume = 3e-5
+        for order in 1, 2:
+            with self.subTest(order=order), tempfile.TemporaryDirectory() as folder:
+                file, output = Path(folder) / "scene.xml", Path(folder) / "output"
+                file.write_text(xml("Scene", {
+                    "Dimension": 2, "Domain": {"Upper": (1.6, 1.), "Cells": (48, 30), "Sides": sides},
+                    "Fluid": {"Density": 1000., "Gravity": (0., -9.8), "Free Surface": {
+                        "Interface": {"Type": "particle level set", "Drops": "ballistic"}, "Liquid": {"Pool": {"Type": "level", "Height": .2}}}},
+                    "Solids": {"Plate": plate}, "Contact": {"Type": "none"}, "Solver": {"Tolerance": 1e-12},
+                    "Output": {"Checkpoints": {"Interval": .01}}, "Time": {"End": 10., "Fixed Step": .01, "Order in Time": order}}))
+                run(file, output, 1)
+                checkpoint = sorted(output.glob("checkpoint-*.h5"))[-1]
+                put_drop(checkpoint, [1, 0, .77, .65, 1, 0, volume])
+                history, _ = run(file, output, 8, 1, ("--restart", checkpoint))
+                for of_drop, of_plate in zip(column(history, "fluid_momentum_x")[1:], column(history, "solid_momentum_x")[1:]):
+                    self.assertLess(abs(of_drop + of_plate - 1000 * volume), 1e-12 * 1000 * volume)
+                self.assertAlmostEqual(of_plate / (1000 * volume), 1, delta=1e-12)
+
     def test_without_drops_nothing_is_told_of_them(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "scene.xml"

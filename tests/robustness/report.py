@@ -12,6 +12,7 @@ import long_tension
 import phases
 import resting
 import seams
+import second_order
 from runs import program
 from scenes import random_scene
 
@@ -27,6 +28,7 @@ FAMILIES = {
     "periodic seams": seams.FIRST_SEED,
     "contact in water": resting.FIRST_SEED,
     "two phases": phases.FIRST_SEED,
+    "second order": second_order.FIRST_SEED,
 }
 # Solids, and how often each thing that a scene may say was drawn.
 FEATURES = {
@@ -44,6 +46,7 @@ FEATURES = {
     "contact": lambda c: c["Contact"]["Type"] != "none",
     "viscosity": lambda c: "Viscosity" in c["Fluid"],
     "order 2 in time": lambda c: c["Fluid"]["Order in Time"] == 2,
+    "order 2 of bodies too": lambda c: c["Time"].get("Order in Time") == 2,
     "smoke or temperature": lambda c: "Smoke" in c["Fluid"] or "Temperature" in c["Fluid"],
     "free surface": lambda c: "Free Surface" in c["Fluid"],
     "joints": lambda c: "Joints" in c,

@@ -15,6 +15,7 @@ import long_tension
 import phases
 import resting
 import seams
+import second_order
 import solvers
 from liquids import AXES
 from parameter_list import to_xml
@@ -375,6 +376,8 @@ def random_scene(seed):
         resting.lay_down(world, content, seed)
     elif seed >= phases.FIRST_SEED:
         phases.give_air_mass(world, content, seed)
+    if seed >= second_order.FIRST_SEED:
+        second_order.keep_rigid(content)
     content["Coupling"] = coupling(world)
     content["Contact"] = contact(world, content["Solids"])
     if rests:
@@ -383,6 +386,8 @@ def random_scene(seed):
         joints.add_joints(world, content, seed)
     content["Solver"] = solvers.solver(world, content["Coupling"], content["Solids"])
     content["Time"] = time(world)
+    if seed >= second_order.FIRST_SEED:
+        second_order.set_order(content)
     content["Observers"] = observers(world)
     content["Output"] = {"Precision": "double", "Checkpoints": {"Interval": 1e-9 * world.dt, "Count": 10}}
     return Scene(seed, to_xml("Scene", content), world.files, world.facts, content, world.n_steps, world.dt)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
-from simulation import assert_close, attempt, column, simulate, table, without_times  # noqa: E402
+from simulation import assert_close, attempt, column, histories, simulate, table, without_times  # noqa: E402
 
 SCENES = Path(__file__).resolve().parents[2] / "xml-params/scenes"
 G = 9.8
@@ -45,17 +45,8 @@ def rising_bubble(cells):
 
 
 class TwoPhases(unittest.TestCase):
-    def run_scene(self, text, *options, ranks=1):
-        """Histories of fluid and bodies."""
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            (folder / "scene.xml").write_text(text)
-            simulate(folder / "scene.xml", folder / "output", *options, ranks=ranks)
-            bodies = folder / "output/bodies.csv"
-            return table(folder / "output/history.csv"), table(bodies) if bodies.exists() else []
-
     def assert_rests(self, text):
-        history, bodies = self.run_scene(text, "--steps", 20)
+        history, bodies = histories(text, "--steps", 20)
         self.assertLess(max(column(history, "fluid_kinetic_energy")), 1e-12)
         self.assertLess(max(column(history, "momentum_error")), 1e-14)
         self.assertLess(max(column(history, "s2_iterations")), 30)
@@ -75,7 +66,7 @@ class TwoPhases(unittest.TestCase):
     def test_a_heavy_drop_falls_freely(self):
         """The gas takes a thousandth of its weight. With "plain" the gas that it meets pushes it back and flattens it."""
         def fall(text):
-            history, _ = self.run_scene(text, "--steps", 48)
+            history, _ = histories(text, "--steps", 48)
             time, momentum, volume = (column(history, name)[-1] for name in ("time", "fluid_momentum_y", "liquid_volume"))
             return -momentum / (1000 * volume * G * time)
         for ratio in (1e3, 1e6):
@@ -85,7 +76,7 @@ class TwoPhases(unittest.TestCase):
     def test_a_bubble_rises_as_published(self):
         """Hysing et al. (2009), case 1: its fastest rise is .2417 to .2421 m/s after .92 to .93 s. Volume and centroid are kept: the
         box is closed, so that momentum is (rho_gas - rho_liquid) times the bubble's area and rise."""
-        history, _ = self.run_scene(rising_bubble(40), "--steps", 96)
+        history, _ = histories(rising_bubble(40), "--steps", 96)
         rise = [momentum / (-900 * math.pi / 16) for momentum in column(history, "fluid_momentum_y")]
         fastest = max(rise)
         self.assertAlmostEqual(fastest, .2419, delta=.006)
@@ -98,7 +89,7 @@ class TwoPhases(unittest.TestCase):
         """A bubble of seven cells below a surface is not closed, as one without mass would be: it sets out at g, its weight's place
         taken by an added mass of as much water."""
         surface = {"Liquid": {"Pool": {"Type": "level", "Height": .7}}, "Bubbles": {"Bubble": {"Type": "ball", "Center": (.5, .35), "Radius": 1.5 / 32}}}
-        history, _ = self.run_scene(scene(surface=surface, ratio=1e3, step=.002), "--steps", 20)
+        history, _ = histories(scene(surface=surface, ratio=1e3, step=.002), "--steps", 20)
         rise = column(history, "fluid_momentum_y")[-1] / (-999 * math.pi * (1.5 / 32) ** 2 * column(history, "time")[-1])
         self.assertAlmostEqual(rise, G, delta=.25 * G)
 
@@ -107,13 +98,13 @@ class TwoPhases(unittest.TestCase):
         for a hanging cloth that is half in the water."""
         disc = {"Disc": {**DISC["Disc"], "Geometry": {"Shape": "ball", "Radius": .12}, "Position": (.5, .75)}}
         for coupling in ("flux", "mixed face"):
-            history, bodies = self.run_scene(scene(cells=48, Solids=disc, Coupling={"Type": coupling}, step=.004), "--steps", 60)
+            history, bodies = histories(scene(cells=48, Solids=disc, Coupling={"Type": coupling}, step=.004), "--steps", 60)
             self.assertAlmostEqual(column(bodies, "vy")[9] / (-G * column(bodies, "time")[9]), 1, delta=.01)
             self.assertLess(column(bodies, "y")[-1], .56)
             self.assertLess(max(column(history, "momentum_error")), 1e-14)
         cloth = {"Cloth": {"Type": "cloth", "Geometry": {"Shape": "sheet", "Size": (0., .4), "Normal": "x", "Mesh Spacing": .04}, "Young's Modulus": 1e5,
                            "Thickness": .01, "Surface Density": 20., "Position": (.5, .52), "Time Integration": "fully-implicit"}}
-        history, bodies = self.run_scene(scene(Solids=cloth, step=.004), "--steps", 25)
+        history, bodies = histories(scene(Solids=cloth, step=.004), "--steps", 25)
         self.assertLess(column(bodies, "y")[-1], .519)
         self.assertLess(max(column(history, "momentum_error")), 1e-12)
 
@@ -127,7 +118,7 @@ class TwoPhases(unittest.TestCase):
             full = scene(**more)
             begin, end = full.index('<ParameterList name="Phases">'), full.index('<ParameterList name="Time">')
             full = full[:begin] + '<Parameter name="Density" type="double" value="1000"/>\n<Parameter name="Order in Time" type="int" value="1"/>\n</ParameterList>\n' + full[end:]
-            (_, of_two), (_, of_one) = (self.run_scene(text, "--steps", 8) for text in (alike, full))
+            (_, of_two), (_, of_one) = (histories(text, "--steps", 8) for text in (alike, full))
             assert_close(of_two, of_one, ("x", "y", "vx", "vy"), 1e-6)
 
     def test_any_water_has_air_by_one_option(self):

@@ -2,7 +2,9 @@
 import csv
 import math
 import os
+import pathlib
 import subprocess
+import tempfile
 
 SIMULATE = os.environ.get("LOCKSTEP_SIMULATE", "build/release/drivers/simulate")
 AUDITED = os.environ.get("LOCKSTEP_SIMULATE_AUDITED", "build/release/tests/leaks/simulate_audited")
@@ -22,6 +24,16 @@ def simulate(file, output, *options, **more):
     """Fails with what the program said unless it ends well; `more`: of `attempt`."""
     result = attempt(file, output, *options, **more)
     assert result.returncode == 0, result.stdout[-4000:]
+
+
+def histories(text, *options, **more):
+    """Rows of history.csv and of bodies.csv (none without bodies) of a scene, as text; `more`: of `attempt`."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "scene.xml").write_text(text)
+        simulate(folder / "scene.xml", folder / "output", *options, **more)
+        bodies = folder / "output/bodies.csv"
+        return table(folder / "output/history.csv"), table(bodies) if bodies.exists() else []
 
 
 def table(path):
