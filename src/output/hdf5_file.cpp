@@ -1,5 +1,5 @@
-// Opening, closing and writing the structure of Hdf5File; datasets are written in
-// hdf5_datasets.cpp, and everything is read in hdf5_reading.cpp.
+// Opening, closing and the structure of an Hdf5File; its datasets are written and read in
+// hdf5_datasets.cpp.
 #include "output/hdf5_file.hpp"
 
 #include <fcntl.h>
