@@ -85,6 +85,23 @@ std::vector<std::vector<SurfaceShare<dim>>> surface_shares(
 }
 
 template <int dim>
+void weigh_nodes_alike(const SurfaceSnapshot<dim>& surface,
+                       std::vector<std::vector<SurfaceShare<dim>>>& shares) {
+  for (auto& of_face : shares) {
+    for (SurfaceShare<dim>& share : of_face) {
+      if (surface.solids()[share.solid].rigid)
+        continue;
+      const auto corners = surface.corners(share.point.simplex);
+      share.point.position.setZero();
+      for (int k = 0; k < dim; ++k) {
+        share.point.barycentric[k] = 1. / dim;
+        share.point.position += corners[k] / dim;
+      }
+    }
+  }
+}
+
+template <int dim>
 void add_local_rotations(const std::vector<ControlVolume<dim>>& volumes,
                          const SurfaceSnapshot<dim>& surface,
                          std::vector<std::vector<SurfaceShare<dim>>>& shares) {
@@ -247,6 +264,10 @@ template int solid_beside<2>(const ControlVolume<2>&);
 template int solid_beside<3>(const ControlVolume<3>&);
 template std::vector<std::vector<SurfaceShare<2>>> surface_shares<2>(
     const std::vector<ControlVolume<2>>&, const SurfaceSnapshot<2>&, double);
+template void weigh_nodes_alike<2>(const SurfaceSnapshot<2>&,
+                                   std::vector<std::vector<SurfaceShare<2>>>&);
+template void weigh_nodes_alike<3>(const SurfaceSnapshot<3>&,
+                                   std::vector<std::vector<SurfaceShare<3>>>&);
 template void directed_row<2>(const SolidSystem<2>&, const SurfacePoint<2>&, const Point<2>&, int,
                               VelocityRow<2>&, std::vector<GlobalIndex>&, std::vector<double>&);
 template void add_local_rotations<2>(const std::vector<ControlVolume<2>>&,

@@ -36,6 +36,12 @@ std::vector<std::vector<SurfaceShare<dim>>> surface_shares(
     const std::vector<ControlVolume<dim>>& volumes, const SurfaceSnapshot<dim>& surface,
     double tolerance = 0.01);
 
+/// Moves every share of a soft solid to the centroid of its simplex, whose nodes then have equal
+/// parts of it: the weights of Section 5, which know the clipped area and not where it lies.
+template <int dim>
+void weigh_nodes_alike(const SurfaceSnapshot<dim>& surface,
+                       std::vector<std::vector<SurfaceShare<dim>>>& shares);
+
 /// Gives every share of a soft solid its local rotation: the option of W that reproduces rigid
 /// motions at the faces' centres.
 template <int dim>

@@ -38,6 +38,17 @@ double MixedFaceCoupling<dim>::open_fraction(const ControlVolume<dim>& volume, b
 }
 
 template <int dim>
+std::vector<std::vector<SurfaceShare<dim>>> MixedFaceCoupling<dim>::shares_of(
+    const std::vector<ControlVolume<dim>>& volumes, const SurfaceSnapshot<dim>& surface) const {
+  auto shares = surface_shares<dim>(volumes, surface);
+  if (options_.soft_weights == SoftWeights::area)
+    weigh_nodes_alike<dim>(surface, shares);
+  else if (options_.soft_weights == SoftWeights::rigid_motions)
+    add_local_rotations<dim>(volumes, surface, shares);
+  return shares;
+}
+
+template <int dim>
 void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
                                       const SolidSystem<dim>& solids,
                                       const SurfaceSnapshot<dim>& surface) {
@@ -45,9 +56,7 @@ void MixedFaceCoupling<dim>::assemble(const FluidDiscretization<dim>& fluid,
               "Lumping \"paper diagonal\" keeps a centre of mass for each axis and cannot be "
               "combined with joints; take \"diagonal\".");
   this->take_volumes(fluid, surface);
-  shares_ = surface_shares<dim>(volumes_, surface);
-  if (options_.carry_rotations)
-    add_local_rotations<dim>(volumes_, surface, shares_);
+  shares_ = shares_of(volumes_, surface);
   const LiquidFluid<dim>* liquid = fluid.liquid();
   masses_ = fluid_masses<dim>(volumes_, surface, options_.whole_cell_mass, liquid);
   find_prescribed(solids);
@@ -238,10 +247,7 @@ void MixedFaceCoupling<dim>::link_row(const ViscousCouplingTerm<dim>& link,
   } else if (link.remote_volume) {
     row.position = link.remote_volume->center;
     const std::vector<ControlVolume<dim>> remote{*link.remote_volume};
-    auto shares = surface_shares<dim>(remote, *surface_);
-    if (options_.carry_rotations)
-      add_local_rotations<dim>(remote, *surface_, shares);
-    share_row(shares.front(), row.position, link.direction, solids, row);
+    share_row(shares_of(remote, *surface_).front(), row.position, link.direction, solids, row);
   } else {
     row.position = link.end;
     SurfaceShare<dim> whole;

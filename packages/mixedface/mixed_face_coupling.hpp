@@ -13,10 +13,17 @@ enum class MixedRule {
   every_cut_cell  ///< any dual cell that the surface cuts
 };
 
+/// Velocity that a mixed face takes from the simplices of soft solids in its dual cell (W).
+enum class SoftWeights {
+  barycentric,   ///< the velocity at the centroid of each clipped part
+  area,          ///< the mean of its nodes, whichever part is clipped (Section 5)
+  rigid_motions  ///< carried to the centre of the face by LocalRotation
+};
+
 struct MixedFaceOptions {
   MixedRule rule = MixedRule::voxel;
   Lumping lumping = Lumping::diagonal;
-  bool carry_rotations = false;  ///< W of soft solids reproduces rigid motions (LocalRotation)
+  SoftWeights soft_weights = SoftWeights::barycentric;
   bool whole_cell_mass = false;  ///< lump rho V instead of the fluid part
   bool correct_buoyancy = true;  ///< see HydrostaticLoads
 };
@@ -53,13 +60,17 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
 
  private:
   double closed_area(const ControlVolume<dim>& volume) const override { return volume.area; }
+  /// The shares of these volumes, for soft solids as the option `soft_weights` says.
+  std::vector<std::vector<SurfaceShare<dim>>> shares_of(
+      const std::vector<ControlVolume<dim>>& volumes, const SurfaceSnapshot<dim>& surface) const;
   /// Adds the rows of the shares, taken at x along one axis.
   void share_row(const std::vector<SurfaceShare<dim>>& shares, const Point<dim>& x, int direction,
                  const SolidSystem<dim>& solids, EndVelocity<dim>& row) const;
   /// Diagonal masses need positive rows: W without rotations. Then momentum goes by those as well,
   /// from the mixed faces to the nodes and back; volume and pressure go by W.
   bool masses_without_rotations() const {
-    return options_.carry_rotations && options_.lumping != Lumping::consistent;
+    return options_.soft_weights == SoftWeights::rigid_motions &&
+           options_.lumping != Lumping::consistent;
   }
   const CouplingWeights& mass_weights() const {
     return masses_without_rotations() ? weights_without_rotations_ : weights_;

@@ -16,12 +16,12 @@ ParameterList valid_parameters() {
       "Lumping of fluid mass on the solid: 'diagonal' row sums for nodes (the paper's choice; "
       "rigid bodies carry their full block), 'consistent' W^T M_F W, 'paper diagonal' the literal "
       "Eqs. 22-24 for rigid bodies, which lose momentum: for comparison.");
-  declare_choice(list, "Weights", "barycentric", {"barycentric", "rigid motions"},
+  declare_choice(list, "Weights", "barycentric", {"barycentric", "area", "rigid motions"},
                  "W of deformable solids. 'barycentric': a mixed face takes the velocity of the "
-                 "surface in its "
-                 "dual cell (Section 5). 'rigid motions': carried to the centre of the face by the "
-                 "rotation of "
-                 "the surface around, so that a turning body moves the fluid as a rigid one does.");
+                 "surface in its dual cell. 'area': that of the nodes of the triangles there, each "
+                 "by the triangle's area in the cell alone (Section 5 to the letter). 'rigid "
+                 "motions': carried to the centre of the face by the rotation of the surface "
+                 "around, so that a turning body moves the fluid as a rigid one does.");
   declare_choice(
       list, "Fluid Mass", "fluid part", {"fluid part", "whole cell"},
       "Fluid mass of a mixed dual cell: density times the part outside the solids, or times the "
@@ -41,7 +41,10 @@ MixedFaceOptions options_from(const ParameterList& list) {
     options.lumping = Lumping::consistent;
   else if (list.get<std::string>("Lumping") == "paper diagonal")
     options.lumping = Lumping::paper_diagonal;
-  options.carry_rotations = list.get<std::string>("Weights") == "rigid motions";
+  if (list.get<std::string>("Weights") == "area")
+    options.soft_weights = SoftWeights::area;
+  else if (list.get<std::string>("Weights") == "rigid motions")
+    options.soft_weights = SoftWeights::rigid_motions;
   options.whole_cell_mass = list.get<std::string>("Fluid Mass") == "whole cell";
   options.correct_buoyancy = list.get<bool>("Correct Buoyancy");
   return options;

@@ -57,7 +57,8 @@ TEST(Lumping, CarriedRowsTakeLittleMoreMemory) {
     MixedFaceOptions options;
     options.rule = MixedRule::every_cut_cell;
     options.lumping = Lumping::consistent;
-    options.carry_rotations = carried;
+    if (carried)
+      options.soft_weights = SoftWeights::rigid_motions;
     FakeBody<3> body = ball<3>(0.3, {0.5, 0.51, 0.48}, FakeBody<3>::Kind::nodal);
     body.surface = ball_surface<3>(0.3, 0.06);
     for (auto& x : body.surface.vertices)

@@ -98,11 +98,12 @@ TEST(SharedRows, BodyAndPrescribedSolidConserveMomentum) {
 
 // With W that carries rotations, too, whose rows have negative entries.
 TEST(SharedRows, NodesConserveLinearMomentum) {
-  for (const bool carried : {false, true}) {
+  for (SoftWeights weights :
+       {SoftWeights::barycentric, SoftWeights::area, SoftWeights::rigid_motions}) {
     for (Lumping lumping : {Lumping::diagonal, Lumping::consistent}) {
       MixedFaceOptions options;
       options.lumping = lumping;
-      options.carry_rotations = carried;
+      options.soft_weights = weights;
       auto bodies = neighbours();
       bodies[0].kind = FakeBody<2>::Kind::nodal;
       CoupledCase<2> c(unit_tank<2>(10), fake_solids<2>({bodies}), options);

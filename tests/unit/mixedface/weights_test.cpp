@@ -9,15 +9,24 @@
 
 namespace lockstep::test {
 
-TEST(Weights, SlantedSegmentClippedByHand) {
+namespace {
+
+/// x = 1.75 + (y - 0.5) / 2 from (1.75, 0.5) to (2.25, 1.5), then upright to (2.25, 2.0), in a box
+/// of 4 x 3 cells of width 1.
+CoupledCase<2> slanted_line(const MixedFaceOptions& options = {}) {
   FakeBox<2> box;
   box.n_cells = {4, 3};
   FakeBody<2> slant;
   slant.kind = FakeBody<2>::Kind::nodal;
   slant.closed = false;
-  // x = 1.75 + (y - 0.5) / 2 from (1.75, 0.5) to (2.25, 1.5), then upright to (2.25, 2.0).
   slant.surface = polyline({{1.75, 0.5}, {2.25, 1.5}, {2.25, 2.0}}, false);
-  CoupledCase<2> c(box, fake_solids<2>({{slant}}));
+  return CoupledCase<2>(box, fake_solids<2>({{slant}}), options);
+}
+
+}  // namespace
+
+TEST(Weights, SlantedSegmentClippedByHand) {
+  CoupledCase<2> c = slanted_line();
   const GatheredFaces<2> faces = gathered_faces(c);
   // Blocked: the lines y = 0.5 and 1.5 between x = 1.5 and 2.5.
   ASSERT_EQ(faces.volumes.size(), 2u);
@@ -33,6 +42,22 @@ TEST(Weights, SlantedSegmentClippedByHand) {
   // upright all of its 0.5, middle between nodes 1 and 2.
   const double slanted = 0.51 * std::sqrt(1.25), upright = 0.5, total = slanted + upright;
   row << slanted * 0.255, 0, slanted * 0.745 + upright * 0.5, 0, upright * 0.5, 0;
+  EXPECT_LT((faces.weights.row(1).transpose() - row / total).norm(), 1e-13);
+}
+
+// Section 5 to the letter: each node of a segment weighs by the segment's length in the dual cell,
+// wherever that part of it lies.
+TEST(Weights, AreaAloneWeighsBothNodesAlike) {
+  MixedFaceOptions options;
+  options.soft_weights = SoftWeights::area;
+  CoupledCase<2> c = slanted_line(options);
+  const GatheredFaces<2> faces = gathered_faces(c);
+  ASSERT_EQ(faces.volumes.size(), 2u);
+  Eigen::VectorXd row = Eigen::VectorXd::Zero(6);
+  row[0] = row[2] = 0.5;
+  EXPECT_LT((faces.weights.row(0).transpose() - row).norm(), 1e-13);
+  const double slanted = 0.51 * std::sqrt(1.25), upright = 0.5, total = slanted + upright;
+  row << slanted / 2, 0, (slanted + upright) / 2, 0, upright / 2, 0;
   EXPECT_LT((faces.weights.row(1).transpose() - row / total).norm(), 1e-13);
 }
 
@@ -89,7 +114,7 @@ void check_carried_rows(double radius) {
   const Point<dim> center = shifted_center<dim>(1, 1. / n_cells);
   const FakeBody<dim> body = ball<dim>(radius, center, FakeBody<dim>::Kind::nodal);
   MixedFaceOptions options;
-  options.carry_rotations = true;
+  options.soft_weights = SoftWeights::rigid_motions;
   options.lumping = Lumping::consistent;  // then faces move by W itself
   CoupledCase<dim> c(unit_tank<dim>(n_cells), fake_solids<dim>({{body}}), options);
   const GatheredFaces<dim> faces = gathered_faces(c);
