@@ -158,10 +158,12 @@ void declare_free_surface(const InterfaceRegistry<dim>& interfaces, ParameterLis
                          "\"Fluid/Sources\" bring it.",
                          sink);
   declare_watches<dim>(list);
-  declare_at_least(
-      list, "Surface Tension", 0.0, 0.0,
-      "sigma [N/m] (2D: [N]): the pressure jumps by sigma times the curvature; the surface meets "
-      "solids and sides at 90 degrees. 0: none.");
+  declare_at_least(list, "Surface Tension", 0.0, 0.0,
+                   "sigma [N/m] (2D: [N]): the pressure jumps by sigma times the curvature; the "
+                   "surface comes to "
+                   "meet the walls of the domain at their \"Contact Angle\", and goes on straight "
+                   "into solids. 0: "
+                   "none.");
   declare_choice(
       list, "Time Integration", "semi-implicit", {"semi-implicit", "explicit"},
       "Of surface tension. explicit: steps are at most 0.28 sqrt(density h^3 / sigma). "

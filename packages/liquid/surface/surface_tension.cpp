@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <optional>
 
@@ -117,6 +118,49 @@ class TangentFit {
   Coefficients right_ = Coefficients::Zero();
   int n_points_ = 0;
 };
+/// The sides of the domain around a cell. The surface there is mirrored about the plane that stands
+/// on it where it meets a side at the side's contact angle: an arc that does so goes on as that
+/// arc.
+template <int dim>
+class SidesAround {
+ public:
+  /// `slope`: of phi, which says in what direction along a side the liquid ends.
+  SidesAround(const MacDomain<dim>& domain, int cell, const Point<dim>& slope) {
+    const TiledGrid<dim>& grid = domain.grid;
+    const Index<dim> middle = grid.coordinates(cell);
+    for (int axis = 0; axis < dim; ++axis) {
+      for (int end = 0; end < 2; ++end) {
+        const double cotangent = domain.boundary.side(axis, end).contact_cotangent;
+        const double distance =
+            0.5 + (end == 0 ? middle[axis] : grid.n_cells()[axis] - 1 - middle[axis]);
+        Point<dim> along = slope;
+        along[axis] = 0;
+        // Where the surface runs along the side it does not meet it.
+        if (cotangent == 0 || distance > reach<dim> || along.norm() < 0.1 * slope.norm())
+          continue;
+        sides_.push_back({axis, end == 0 ? -1. : 1., distance, cotangent * along.normalized()});
+      }
+    }
+  }
+  /// Takes a place beyond sides, mirrored about them, to where the surface goes on [cells from the
+  /// cell].
+  void lean(Point<dim>& x) const {
+    for (const Side& side : sides_) {
+      const double beyond = side.outward * x[side.axis] - side.distance;
+      if (beyond > 0)
+        x += 2 * beyond * side.lean;
+    }
+  }
+
+ private:
+  struct Side {
+    int axis = 0;
+    double outward = 1;   ///< along the axis
+    double distance = 0;  ///< [cells] of the side
+    Point<dim> lean;      ///< along the side, half of the way that one cell beyond it adds
+  };
+  boost::container::static_vector<Side, 2 * dim> sides_;
+};
 }  // namespace
 
 template <int dim>
@@ -132,6 +176,7 @@ double curvature(const MacDomain<dim>& domain, const CellField& phi, int wet, in
   if (steepness < 1e-3 * h)
     return 0;
   TangentFit<dim> fit(origin, slope / steepness);
+  const SidesAround<dim> sides(domain, wet, slope);
   for (int k = 0; k < Around::n; ++k) {
     const Index<dim> offset = Around::offset(k);
     for (int a = 0; a < dim; ++a) {
@@ -147,6 +192,7 @@ double curvature(const MacDomain<dim>& domain, const CellField& phi, int wet, in
       for (int b = 0; b < dim; ++b)
         x[b] = offset[b];
       x[a] += below / (below - above);
+      sides.lean(x);
       fit.add(x);
     }
   }

@@ -7,8 +7,8 @@ namespace lockstep {
 /// Curvature of the surface where it crosses the line from the centre of a wet cell to that of the
 /// dry one beside it, at the part `place` of the way; positive where the liquid is convex, at most
 /// (dim - 1) / h in size [1/m]: that of the paraboloid through the places around at which it
-/// crosses such lines. At the sides of the domain all is mirrored, so that the surface meets them
-/// at 90 degrees. Local.
+/// crosses such lines. Beyond the sides of the domain the surface goes on at their contact angle:
+/// one that meets a side at another is bent there, and so pulled to it. Local.
 template <int dim>
 double curvature(const MacDomain<dim>& domain, const CellField& phi, int wet, int axis, int side,
                  double place);

@@ -18,6 +18,9 @@ std::string side_name(int axis, int end) {
 namespace {
 const std::vector<std::string> side_types = {"wall", "slip wall", "open", "inflow", "periodic"};
 
+constexpr double right_angle = 90;          // [degrees]
+constexpr double least_contact_angle = 20;  // [degrees]
+
 SideType side_type(const std::string& name) {
   for (std::size_t i = 0; i < side_types.size(); ++i)
     if (side_types[i] == name)
@@ -50,6 +53,12 @@ BoundarySide<dim> read_side(const ParameterList& list, const Box<dim>& domain, i
               "In \"{}\", \"Pressure\" has no meaning on a side of type \"{}\"; it is for open "
               "sides.",
               where, list.get<std::string>("Type"));
+  const auto angle = list.get<double>("Contact Angle");
+  check_input(side.closed() || angle == right_angle,
+              "In \"{}\", \"Contact Angle\" has no meaning on a side of type \"{}\"; it is for "
+              "walls.",
+              where, list.get<std::string>("Type"));
+  side.contact_cotangent = angle == right_angle ? 0 : 1 / std::tan(angle * pi / 180);
   return side;
 }
 
@@ -94,6 +103,11 @@ ParameterList domain_parameters() {
               "what comes in is like what is there: liquid beside liquid.");
       for (const char* name : {"Velocity", "Pressure"})
         set_variables(side, name, place_and_time(dim));
+      declare_between(side, "Contact Angle", right_angle, least_contact_angle,
+                      180 - least_contact_angle,
+                      "Angle at which a free surface with \"Surface Tension\" comes to meet this "
+                      "wall, measured in the liquid [degrees]: less than 90 where the liquid wets "
+                      "it.");
       declare_inflow_opening<dim>(side);
       declare_inflow_wave(side);
       declare_inflow_scalars<dim>(side);

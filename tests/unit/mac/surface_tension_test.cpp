@@ -12,16 +12,20 @@ namespace lockstep::test {
 namespace {
 
 /// Largest error of the curvature of a ball, times its radius, at all lines that its surface
-/// crosses; an eighth of it, so that the sides mirror the rest.
+/// crosses; an eighth of it, so that the sides mirror the rest, or a cap that meets the lower side
+/// along y at another angle [degrees], of which that side is told.
 template <int dim>
-double error_of_curvature(int n, double radius) {
+double error_of_curvature(int n, double radius, double angle = 90, double told = 90) {
   Case<dim> scene(cube<dim>(n), 1.0 / n);
-  add_ball<dim>(scene, Point<dim>::Zero(), radius);
+  scene.domain.sublist("Sides").sublist("y lower").set("Contact Angle", told);
+  const Point<dim> center = -radius * std::cos(angle * pi / 180) * Point<dim>::Unit(1);
+  add_ball<dim>(scene, center, radius);
   const auto fluid = make_liquid<dim>(scene);
   fluid->set_geometry(nullptr, BlockedFaces<dim>());
   const MacDomain<dim>& domain = fluid->domain();
   CellField phi(domain.grid.n_stored_cells(), 1);
-  domain.grid.for_each_stored_cell([&](int c) { phi[c] = domain.grid.center(c).norm() - radius; });
+  domain.grid.for_each_stored_cell(
+      [&](int c) { phi[c] = (domain.grid.center(c) - center).norm() - radius; });
   double worst = 0;
   domain.grid.for_each_owned_cell([&](int c) {
     for (int i = 0; i < 2 * dim; ++i) {
@@ -43,6 +47,20 @@ TEST(SurfaceTension, FindsTheCurvatureOfABall) {
   // In 3D the fit is narrower, and what is linear between two centres shows.
   EXPECT_LT(error_of_curvature<3>(16, 0.61), 0.08);
   EXPECT_LT(error_of_curvature<3>(32, 0.61), 0.08);
+}
+
+// A surface that meets a wall at its contact angle goes on beyond it, one that does not is bent
+// there, so that tension pulls it to the angle.
+TEST(SurfaceTension, CapsAtTheirContactAngleAreNotBentAtTheWall) {
+  for (const double angle : {45., 60., 120., 135.}) {
+    SCOPED_TRACE(angle);
+    const double coarse = error_of_curvature<2>(16, 0.5, angle, angle);
+    const double fine = error_of_curvature<2>(32, 0.5, angle, angle);
+    EXPECT_LT(coarse, 0.3);
+    EXPECT_LT(fine, 0.7 * coarse);
+    EXPECT_LT(error_of_curvature<3>(32, 0.5, angle, angle), 0.25);
+    EXPECT_GT(error_of_curvature<2>(32, 0.5, angle, 90), 1);
+  }
 }
 
 /// The velocity gains what the ledger is told, and each face what its area bears.
