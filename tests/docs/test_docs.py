@@ -32,7 +32,7 @@ ROOMS = ("src", "packages", "drivers", "tests", "tools", "template", "cmake")
 
 
 def pages():
-    return [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "template" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    return [*sorted(ROOT.glob("*.md")), ROOT / "template" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def headings(page):

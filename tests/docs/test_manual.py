@@ -93,7 +93,7 @@ class BrokenPages(unittest.TestCase):
             copy = Path(folder) / "tree"
             for part in ("docs", "template", "xml-params", "tools", "src/interfaces"):
                 shutil.copytree(ROOT / part, copy / part)
-            for part in ("README.md", "CHANGELOG.md", "CITATION.cff", "LICENSE"):
+            for part in ("README.md", "CHANGELOG.md", "CITATION.cff", "CODE_OF_CONDUCT.md", "CONTRIBUTING.md", "LICENSE"):
                 shutil.copy(ROOT / part, copy / part)
             page = copy / "docs/parallel.md"
             page.write_text(page.read_text() + "\nSee [there](not-there.md).\n")

@@ -1,7 +1,8 @@
-"""Runs what the pages "write a scene" and "write a study" tell to write, as a reader would.
+"""Runs what the pages "write a scene", "write a study" and "five minutes" tell to write, as a reader would.
 
 Usage: test_written_scenes.py ROOT SIMULATE CONVERGE
 """
+import csv
 import re
 import subprocess
 import sys
@@ -15,7 +16,7 @@ END = "</ParameterList>\n"
 
 
 def blocks(page):
-    text = (ROOT / "docs" / "tutorials" / page).read_text()
+    text = (ROOT / "docs" / page).read_text()
     return re.findall(r"```xml\n(.*?)```", text, re.DOTALL)
 
 
@@ -40,8 +41,18 @@ class WrittenScenes(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stdout)
         return result.stdout
 
+    def assert_couplings_differ(self):
+        """The table of the study "rise" has its quantity by both couplings, which are not the same one twice."""
+        with (Path(self.folder.name) / "rise" / "table.csv").open() as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        values = {name: [float(row["value"]) for row in rows if row["series"] == name and row["quantity"] == "acceleration"]
+                  for name in ("mixed face", "flux")}
+        self.assertEqual([len(of) for of in values.values()], [2, 2])
+        for mixed_face, flux in zip(*values.values()):
+            self.assertGreater(abs(mixed_face - flux), 0.1)
+
     def test_scene(self):
-        box, body, constants, formulas, many, like_another, preset, view = blocks("write-a-scene.md")
+        box, body, constants, formulas, many, like_another, preset, view = blocks("tutorials/write-a-scene.md")
         numbers = constants[: constants.index("  ...")]
         self.assertIn("valid", self.run_program(SIMULATE, self.write("box.xml", box), "--validate"))
         self.run_program(SIMULATE, self.write("body.xml", with_lists(box, body, view)), "--validate")
@@ -62,11 +73,17 @@ class WrittenScenes(unittest.TestCase):
                          "--validate", "--set", "Domain/Cells={32, 12, 8}")
 
     def test_study(self):
-        box, body, *_ = blocks("write-a-scene.md")
-        time_and_output, study = blocks("write-a-study.md")
+        box, body, *_ = blocks("tutorials/write-a-scene.md")
+        time_and_output, study = blocks("tutorials/write-a-study.md")
         self.write("rise-scene.xml", with_lists(box, body, time_and_output))
         self.run_program(CONVERGE, self.write("rise.xml", study), "--output", "rise", "--rungs", "1:2")
-        self.assertIn("acceleration", (Path(self.folder.name) / "rise" / "table.md").read_text())
+        self.assert_couplings_differ()
+
+    def test_five_minutes(self):
+        ball, study = blocks("start.md")
+        self.run_program(SIMULATE, self.write("ball.xml", ball), "--steps", "2", "--output", "ball")
+        self.run_program(CONVERGE, self.write("rise.xml", study), "--output", "rise", "--rungs", "1:2")
+        self.assert_couplings_differ()
 
 
 if __name__ == "__main__":
