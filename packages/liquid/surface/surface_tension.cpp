@@ -135,7 +135,7 @@ class SidesAround {
             0.5 + (end == 0 ? middle[axis] : grid.n_cells()[axis] - 1 - middle[axis]);
         Point<dim> along = slope;
         along[axis] = 0;
-        // Where the surface runs along the side it does not meet it.
+        // A surface along the side does not meet it.
         if (cotangent == 0 || distance > reach<dim> || along.norm() < 0.1 * slope.norm())
           continue;
         sides_.push_back({axis, end == 0 ? -1. : 1., distance, cotangent * along.normalized()});
