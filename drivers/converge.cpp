@@ -30,7 +30,7 @@
 #include "studies/child_process.hpp"
 #include "studies/curves.hpp"
 #include "studies/expression_check.hpp"
-#include "studies/extrapolation.hpp"
+#include "studies/orders.hpp"
 #include "studies/status_line.hpp"
 #include "studies/study_table.hpp"
 #include "studies/work_precision.hpp"
@@ -142,8 +142,8 @@ int run_study(const Study& study, const Arguments& arguments) {
   const std::vector<StudyRow> table = study_table(study, cases, outcomes, tell);
   write_file_atomically(directory + "/table.csv", table_csv(study, table));
   write_file_atomically(directory + "/table.md", table_markdown(study, table) +
-                                                     targets_markdown(study, table) +
-                                                     extrapolations_markdown(study, table));
+                                                     orders_markdown(study, table) +
+                                                     targets_markdown(study, table));
   if (!table.empty())
     plot(directory, "plot-study", "table.csv", "plot.png");
   const std::string curves = curves_csv(study, cases, outcomes, tell);

@@ -27,6 +27,8 @@ const std::vector<FormerName>& former_names() {
       {"Contact", "Bounce Speed", "is always 1 mm/s now: leave it out"},
       {"Contact", "Between Jointed Solids", "is gone: solids that a joint connects never touch"},
       {"Contact", "Self-Contact", "is gone: what is not rigid always touches itself"},
+      // Studies.
+      {"", "Extrapolate", "is always done now where the order is clean: leave it out"},
       // Solids.
       {"", "Orientation", "is called \"Rotation\" now: in 3D axis times angle, no quaternion"},
       {"", "Rotation Axis", "is gone: \"Rotation\" is axis times angle"},

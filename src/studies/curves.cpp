@@ -48,9 +48,12 @@ std::string curves_csv(const Study& study, const std::vector<StudyCase>& cases,
       }
     }
   }
+  std::string units;
+  for (const Curve& curve : study.curves)
+    units += unit_line(curve.name, curve.unit);
   const std::string head =
-      fmt::format("# title: {}\n# ladder: {}\ncurve,series,ladder,time,value,exact\n", study.title,
-                  study.ladder_name);
+      fmt::format("# title: {}\n# ladder: {}\n{}curve,series,ladder,time,value,exact\n",
+                  study.title, study.ladder_name, units);
   return csv.empty() ? "" : head + csv;
 }
 

@@ -48,6 +48,11 @@ ParameterList factor_parameters() {
   return factor;
 }
 
+void declare_unit(ParameterList& list, const std::string& of) {
+  declare(list, "Unit", "",
+          fmt::format("Unit of {}, for plots: \"m/s\"; \"1\" without dimension.", of));
+}
+
 void declare_targets(ParameterList& list) {
   declare(list, "Targets", ParameterArray<double>(),
           "Errors whose cost is reported: in how many core seconds, with how many cells and how "
@@ -70,10 +75,6 @@ void declare_reduction(ParameterList& list) {
   declare_optional<double>(list, "Start", "Rows before this time do not count [s].");
   declare_reference(list);
   declare_targets(list);
-  declare(list, "Extrapolate", false,
-          "Report Richardson's extrapolation from the last three rungs of each series, where the "
-          "rungs have one ratio and the observed orders agree within 0.25: those of the last two "
-          "triples of rungs or, with three rungs, that of the triple and 1 or 2.");
 }
 
 std::vector<TypedSchema> quantity_types() {
@@ -112,7 +113,8 @@ std::vector<TypedSchema> quantity_types() {
       "across the line values are linear between cells.");
   declare_reference(line);
   declare_targets(line);
-  declare(line, "Extrapolate", false, "Report Richardson's extrapolation, as for tables.");
+  for (ParameterList* list : {&table, &surface, &field, &line})
+    declare_unit(*list, "its values");
   return {{"table", "A quantity from the tables of a run.", table},
           {"surface", "A quantity from a solid's surface in the frames of a run, one row a frame.",
            surface},
@@ -125,6 +127,7 @@ ParameterList curve_parameters() {
   declare_required<std::string>(curve, "Expression",
                                 "Formula of the columns of the tables, as for a quantity.");
   declare(curve, "Reference", "", "Formula of what it should be, of the same; drawn dashed.");
+  declare_unit(curve, "its values");
   return curve;
 }
 
@@ -228,7 +231,6 @@ void read_line(const ParameterList& list, const std::string& name, Quantity& qua
       list.get<std::string>("Over"), {{"max", Quantity::Over::max}, {"min", Quantity::Over::min}});
   quantity.reference = list.get<std::string>("Reference");
   quantity.relative = list.get<bool>("Relative");
-  quantity.extrapolate = list.get<bool>("Extrapolate");
 }
 
 Quantity read_quantity(const ParameterList& list, const std::string& name) {
@@ -237,6 +239,7 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
   using Norm = Quantity::Norm;
   Quantity quantity;
   quantity.name = name;
+  quantity.unit = list.get<std::string>("Unit");
   quantity.targets = list.get<ParameterArray<double>>("Targets").toVector();
   quantity.from = choice<From>(list.get<std::string>("Type"), {{"table", From::tables},
                                                                {"surface", From::surface},
@@ -271,7 +274,6 @@ Quantity read_quantity(const ParameterList& list, const std::string& name) {
     quantity.from_time = list.get<double>("Start");
   quantity.reference = list.get<std::string>("Reference");
   quantity.relative = list.get<bool>("Relative");
-  quantity.extrapolate = list.get<bool>("Extrapolate");
   return quantity;
 }
 
@@ -303,6 +305,8 @@ ParameterList study_parameters() {
           "ranks. Orders "
           "of convergence are taken in it, unless it is the ladder's constant itself (and not h or "
           "dt): along density ratios, say, there are none.");
+  declare(ladder, "Title", "", "Name of the abscissa in plots; h, dt, cells and ranks have one.");
+  declare_unit(ladder, "the abscissa");
   declare_named_sublists(study, "Series", "The lines of the plot; without any there is one.",
                          series_parameters());
   declare_named_sublists(
@@ -340,6 +344,8 @@ Study read_study(const std::string& file) {
   study.ladder_values = ladder.get<ParameterArray<double>>("Values").toVector();
   study.usual_rungs = ladder.get<int>("Usual Rungs");
   study.abscissa = ladder.get<std::string>("Abscissa");
+  study.abscissa_name = ladder.get<std::string>("Title");
+  study.abscissa_unit = ladder.get<std::string>("Unit");
   study.series = read_all_series(list, file);
   study.n_samples = list.sublist("Samples").get<int>("Count");
   study.sample_assignments =
@@ -348,15 +354,10 @@ Study read_study(const std::string& file) {
     study.quantities.push_back(read_quantity(Teuchos::getValue<ParameterList>(entry), name));
   for (const auto& [name, entry] : entries(list.sublist("Curves"))) {
     const auto& curve = Teuchos::getValue<ParameterList>(entry);
-    study.curves.push_back(
-        {name, curve.get<std::string>("Expression"), curve.get<std::string>("Reference")});
+    study.curves.push_back({name, curve.get<std::string>("Expression"),
+                            curve.get<std::string>("Reference"), curve.get<std::string>("Unit")});
   }
   check_input(!study.quantities.empty(), "{}: the study measures nothing; name a quantity.", file);
-  for (const Quantity& quantity : study.quantities)
-    check_input(!quantity.extrapolate || is_resolution(study),
-                "{}: \"Extrapolate\" of \"{}\" needs a ladder of resolutions; its \"Abscissa\" "
-                "is the ladder's constant itself, \"{}\", not h, dt or a formula such as 1/n.",
-                file, quantity.name, study.ladder_name);
   check_input(!study.ladder_values.empty(), "{}: the ladder has no \"Values\".", file);
   return study;
 }

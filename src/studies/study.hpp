@@ -42,7 +42,7 @@ struct Quantity {
   std::string reference;        ///< a formula, "self" or empty
   bool relative = true;         ///< error over |reference|
   std::vector<double> targets;  ///< errors whose cost is reported
-  bool extrapolate = false;     ///< to the limit of its ladder, where the order is clean
+  std::string unit;             ///< unit of the values, for plots; "1" without dimension
 };
 
 /// A quantity over time, drawn for every case.
@@ -50,6 +50,7 @@ struct Curve {
   std::string name;
   std::string expression;  ///< over the columns of history and bodies
   std::string exact;       ///< exact value, likewise; may be empty
+  std::string unit;        ///< unit of both, for plots
 };
 
 /// A study file: which scene is run with which changes, and what is measured.
@@ -62,6 +63,7 @@ struct Study {
   std::vector<double> ladder_values;
   int usual_rungs = 0;  ///< 0: all
   std::string abscissa;
+  std::string abscissa_name, abscissa_unit;  ///< for plots; may be empty
   std::vector<Series> series;
   int n_samples = 1;
   std::vector<std::string> sample_assignments;

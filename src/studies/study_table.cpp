@@ -119,13 +119,17 @@ void add_orders(std::vector<StudyRow>& rows) {
   }
 }
 
+bool is_against_self(const Quantity& quantity) {
+  return trimmed(quantity.reference) == "self";
+}
+
 /// Adds the errors of `rows`, which belong to `rungs` one by one. `is_whole`: the last rung is the
 /// last of the series.
 void add_errors(std::vector<StudyRow>& rows, const Quantity& quantity,
                 const std::vector<const Rung*>& rungs, bool is_whole) {
   if (quantity.reference.empty() || rows.empty())
     return;
-  const bool self = trimmed(quantity.reference) == "self";
+  const bool self = is_against_self(quantity);
   if (self && !is_whole)
     return;
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -156,7 +160,7 @@ std::vector<StudyRow> rows_of(const Study& study, const Quantity& quantity,
     }
   }
   const bool is_whole = !measured.empty() && measured.back()->first->rung == last_rung;
-  if (!rows.empty() && !is_whole && trimmed(quantity.reference) == "self")
+  if (!rows.empty() && !is_whole && is_against_self(quantity))
     tell(
         fmt::format("\"{}\" of series \"{}\" has no errors: its last rung, which is the "
                     "reference, is missing.",
@@ -176,9 +180,16 @@ std::string short_text(const std::optional<double>& number, int digits) {
 }
 
 /// Comments that the plot reads.
-std::string target_lines(const Study& study) {
+std::string plot_lines(const Study& study) {
   std::string lines;
+  if (!study.abscissa_name.empty())
+    lines += fmt::format("# abscissa name: {}\n", study.abscissa_name);
+  if (!study.abscissa_unit.empty())
+    lines += fmt::format("# abscissa unit: {}\n", study.abscissa_unit);
   for (const Quantity& quantity : study.quantities) {
+    lines += unit_line(quantity.name, quantity.unit);
+    if (is_against_self(quantity))
+      lines += fmt::format("# reference of {}: self\n", without_separators(quantity.name));
     if (!quantity.targets.empty())
       lines += fmt::format("# targets of {}: {}\n", without_separators(quantity.name),
                            fmt::join(quantity.targets, " "));
@@ -187,6 +198,10 @@ std::string target_lines(const Study& study) {
 }
 
 }  // namespace
+
+std::string unit_line(const std::string& name, const std::string& unit) {
+  return unit.empty() ? "" : fmt::format("# unit of {}: {}\n", without_separators(name), unit);
+}
 
 std::string without_separators(std::string name) {
   std::replace_if(
@@ -211,6 +226,19 @@ std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCas
   return table;
 }
 
+std::vector<std::vector<StudyRow>> rows_by_series(const std::vector<StudyRow>& rows,
+                                                  const std::string& quantity) {
+  std::vector<std::vector<StudyRow>> by_series;
+  for (const StudyRow& row : rows) {
+    if (row.quantity != quantity)
+      continue;
+    if (by_series.empty() || by_series.back().front().series != row.series)
+      by_series.emplace_back();
+    by_series.back().push_back(row);
+  }
+  return by_series;
+}
+
 std::string table_csv(const Study& study, const std::vector<StudyRow>& rows) {
   std::string csv = fmt::format(
       "# title: {}\n# abscissa: {}\n# ladder: {}\n"
@@ -222,7 +250,7 @@ std::string table_csv(const Study& study, const std::vector<StudyRow>& rows) {
       "# at_a_time: runs of the study, at most, while this one went; more than 1 take longer\n"
       "{}series,cells,h,dt,ranks,quantity,value,reference,error,order,wall_seconds,core_seconds,"
       "iterations_median,iterations_max,peak_memory_mb,spread,samples,abscissa,at_a_time\n",
-      study.title, study.abscissa, study.ladder_name, target_lines(study));
+      study.title, study.abscissa, study.ladder_name, plot_lines(study));
   for (const StudyRow& row : rows) {
     csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                        without_separators(row.series), row.cells, number_text(row.spacing),
@@ -239,11 +267,13 @@ std::string table_markdown(const Study& study, const std::vector<StudyRow>& rows
   std::string page = study.title.empty() ? "" : fmt::format("{}\n\n", study.title);
   for (const Quantity& quantity : study.quantities) {
     page += fmt::format(
-        "**{}**\n\n"
+        "**{}**{}\n\n"
         "| series | {} | cells | h | dt | ranks | value | spread | reference | error | order | "
         "core seconds | iterations (median, max) | memory [MB] |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-        quantity.name, study.ladder_name);
+        quantity.name,
+        is_against_self(quantity) ? ", reference `self`: the finest run of each series" : "",
+        study.ladder_name);
     for (const StudyRow& row : rows) {
       if (row.quantity != quantity.name)
         continue;

@@ -34,8 +34,15 @@ std::vector<StudyRow> study_table(const Study& study, const std::vector<StudyCas
                                   const std::vector<CaseOutcome>& outcomes,
                                   const std::function<void(const std::string&)>& tell);
 
+/// The rows of one quantity, series by series.
+std::vector<std::vector<StudyRow>> rows_by_series(const std::vector<StudyRow>& rows,
+                                                  const std::string& quantity);
+
 /// A name inside a CSV field: no commas, quotes or line breaks.
 std::string without_separators(std::string name);
+
+/// The comment of a CSV file that tells the plot a unit; none without one.
+std::string unit_line(const std::string& name, const std::string& unit);
 
 /// Returns the table with a commented header that tools/plot-study reads. Numbers that do not exist
 /// are left empty.

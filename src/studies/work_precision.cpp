@@ -62,16 +62,11 @@ TargetCost cost_of_target(const std::vector<StudyRow>& rung_rows, double target)
 }
 
 std::vector<TargetCost> ranking(const std::vector<StudyRow>& rows, double target) {
-  std::vector<std::vector<StudyRow>> by_series;
-  for (const StudyRow& row : rows) {
-    if (by_series.empty() || by_series.back().front().series != row.series)
-      by_series.emplace_back();
-    by_series.back().push_back(row);
-  }
   std::vector<TargetCost> costs;
-  costs.reserve(by_series.size());
-  for (const auto& rungs : by_series)
-    costs.push_back(cost_of_target(rungs, target));
+  if (!rows.empty()) {
+    for (const auto& rungs : rows_by_series(rows, rows.front().quantity))
+      costs.push_back(cost_of_target(rungs, target));
+  }
   const auto misses = [](const TargetCost& cost) {
     return cost.found == TargetCost::Found::not_reached;
   };

@@ -208,7 +208,9 @@ class PlotFrame(Pictures):
         self.make(3)
         for arguments, message in [(["--field", "smok"], "the run wrote: smoke, velocity"),
                                    (["--frame", "7"], "frames 0 to 1"),
-                                   (["--position", "9"], "outside the fluid's box")]:
+                                   (["--position", "9"], "outside the fluid's box"),
+                                   (["--colours", "virids"], "no colour map 'virids'; near are viridis"),
+                                   (["--output", "picture.jpg"], "says no format")]:
             result = self.run_tool("plot-frame", *arguments)
             self.assertEqual(result.returncode, 2)
             self.assertIn(message, result.stderr)

@@ -93,7 +93,7 @@ TEST(Cases, FormulasAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(complaint("Ball.vx"), testing::HasSubstr("Did you mean \"Ball_1.vx\"?"));
   EXPECT_THAT(complaint("Ball_1.vx +"), testing::HasSubstr("Quantity \"speed\""));
   EXPECT_THAT(complaint("tim"), testing::HasSubstr("cannot evaluate"));
-  study.curves = {{"curve", "time", "densty"}};
+  study.curves = {{"curve", "time", "densty", ""}};
   EXPECT_THAT(complaint("time"), testing::HasSubstr("Curve \"curve\""));
   study.curves.clear();
   study.abscissa = "hh";

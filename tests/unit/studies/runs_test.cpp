@@ -254,7 +254,8 @@ TEST_F(Runs, WhatCannotBeReadLeavesTheRest) {
   width.over = Quantity::Over::max;
   width.reference = "";
   study_.quantities.push_back(width);
-  study_.curves = {{"first", "dt", ""}, {"second", "1 / (step - 2)", ""}, {"third", "step", ""}};
+  study_.curves = {
+      {"first", "dt", "", "s"}, {"second", "1 / (step - 2)", "", ""}, {"third", "step", "", ""}};
   ASSERT_EQ(table().size(), 6u);
   std::ofstream(folder_ + "/runs/all/n=8/frames/frame-000003.h5") << "no frame";
   EXPECT_EQ(table().size(), 5u);
@@ -267,6 +268,7 @@ TEST_F(Runs, WhatCannotBeReadLeavesTheRest) {
   EXPECT_THAT(told_[0], testing::HasSubstr("all/n=8: not measured. "));
   told_.clear();
   const std::string curves = curves_csv(study_, cases_, outcomes, tell_);
+  EXPECT_THAT(curves, testing::HasSubstr("# unit of first: s\ncurve,"));
   EXPECT_THAT(curves, testing::HasSubstr("\nfirst,all,16,"));
   EXPECT_THAT(curves, testing::Not(testing::HasSubstr("second")));
   EXPECT_THAT(curves, testing::HasSubstr("\nthird,all,4,"));
@@ -415,30 +417,6 @@ TEST_F(Runs, SymbolsOfAStudyFileAreStrict) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("Did you mean \"Expression\""));
-  }
-}
-
-TEST_F(Runs, ALimitIsAskedForAlongResolutionsOnly) {
-  const std::string file = folder_ + "/study.xml";
-  std::ofstream(file) << R"xml(<ParameterList name="Study">
-  <Parameter name="Scene" type="string" value="scene.xml"/>
-  <ParameterList name="Ladder">
-    <Parameter name="Name" type="string" value="ratio"/>
-    <Parameter name="Values" type="Array(double)" value="{4, 8, 16}"/>
-    <Parameter name="Abscissa" type="string" value="ratio"/>
-  </ParameterList>
-  <ParameterList name="Quantities">
-    <ParameterList name="speed">
-      <Parameter name="Expression" type="string" value="step"/>
-      <Parameter name="Extrapolate" type="bool" value="true"/>
-    </ParameterList>
-  </ParameterList>
-</ParameterList>)xml";
-  try {
-    read_study(file);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("needs a ladder of resolutions"));
   }
 }
 

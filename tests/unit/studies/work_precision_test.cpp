@@ -1,11 +1,9 @@
-// Costs of an error, and limits of a ladder, on tables made by hand.
+// Costs of an error, on tables made by hand.
 #include "studies/work_precision.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
-
-#include "studies/extrapolation.hpp"
 
 namespace lockstep::test {
 
@@ -20,18 +18,6 @@ StudyRow row_of(const std::string& series, double seconds, double error) {
   row.peak_memory_mb = 100;
   row.error = error;
   return row;
-}
-
-/// Rungs h = 1, 1/2, 1/4... with the values given.
-std::vector<StudyRow> halvings(const std::vector<double>& values) {
-  std::vector<StudyRow> rows;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    rows.push_back(row_of("flux", 1, 1));
-    rows.back().value = values[k];
-    rows.back().abscissa = std::pow(0.5, static_cast<double>(k));
-    rows.back().reference = 2;
-  }
-  return rows;
 }
 
 Study study_of(const Quantity& quantity) {
@@ -98,31 +84,6 @@ TEST(WorkPrecision, TheCheapestSeriesComesFirst) {
   EXPECT_THAT(page, testing::HasSubstr("| 0.05 | 1 | fast | 2 | 20 | 100 |"));
   EXPECT_THAT(page, testing::HasSubstr("| 0.05 | not reached | never |  |  |  |"));
   EXPECT_EQ(targets_markdown(study_of({}), rows), "");
-}
-
-TEST(Extrapolation, ACleanOrderGivesTheLimit) {
-  const auto second = extrapolate(halvings({2 + 1., 2 + 1. / 4, 2 + 1. / 16}));
-  ASSERT_TRUE(second);
-  EXPECT_NEAR(second->order, 2, 1e-12);
-  EXPECT_NEAR(second->limit, 2, 1e-12);
-  // An order of 1.5 is believed if four rungs show it, not from three.
-  const std::vector<double> odd{1, std::pow(0.5, 1.5), std::pow(0.25, 1.5), std::pow(0.125, 1.5)};
-  EXPECT_NEAR(extrapolate(halvings(odd))->limit, 0, 1e-12);
-  EXPECT_FALSE(extrapolate(halvings({odd.begin(), odd.begin() + 3})));
-}
-
-TEST(Extrapolation, NothingIsSaidWhereTheOrderIsNotClean) {
-  EXPECT_FALSE(extrapolate(halvings({3, 2.5})));
-  EXPECT_FALSE(extrapolate(halvings({3, 2, 2.5})));      // not monotone
-  EXPECT_FALSE(extrapolate(halvings({3, 2.5, 1})));      // diverges
-  EXPECT_FALSE(extrapolate(halvings({9, 5, 3, 2.75})));  // order 1, then 3
-  auto uneven = halvings({3, 2.25, 2.0625});
-  uneven[2].abscissa = 0.3;
-  EXPECT_FALSE(extrapolate(uneven));
-  Quantity quantity;
-  quantity.extrapolate = true;
-  const std::string page = extrapolations_markdown(study_of(quantity), halvings({3, 2.25, 2.0625}));
-  EXPECT_THAT(page, testing::HasSubstr("| speed | flux | 2.0625 | 2.00 | 2 | 0 |"));
 }
 
 }  // namespace lockstep::test
