@@ -9,9 +9,14 @@
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/steering.hpp"
 #include "output/progress.hpp"
+#include "parameters/strict_values.hpp"
+#include "parameters/strict_xml.hpp"
+#include "parameters/suggestion.hpp"
 #include "programs/open_scene.hpp"
 #include "scenes/expand_scene.hpp"
 #include "shipped/shipped_plug_ins.hpp"
+#include "stepping/report/observer_tables.hpp"
+#include "stepping/report/run_columns.hpp"
 #include "stepping/scene_file.hpp"
 #include "stepping/simulation.hpp"
 
@@ -70,29 +75,60 @@ WholeField whole(const BoxFrame& box, const BoxField& field, const Communicator&
   return result;
 }
 
+/// Returns the sentence about a name that is not among those that there are.
+std::string unknown(const char* kind, const std::string& name,
+                    const std::vector<std::string>& names) {
+  const std::string nearest = nearest_name(name, names);
+  return fmt::format("There is no {} \"{}\".{} There are: {}.", kind, name,
+                     nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest),
+                     names.empty() ? "none" : quoted_list(names));
+}
+
+Document read_scene(const OpenRequest& request, const Communicator& comm) {
+  if (request.text.empty())
+    return read_xml(request.scene, comm, FormulaPolicy::kept);
+  Document document = read_xml_string(request.text, request.scene, FormulaPolicy::kept);
+  if (request.from_dictionary) {
+    document.source.places.clear();
+    document.source.mixes_numbers = true;
+  }
+  return document;
+}
+
 template <int dim>
 class SteppedRun : public AnyRun {
  public:
-  SteppedRun(Document document, const Registries<dim>& registries, const OpenRequest& request,
+  SteppedRun(Document document, PlugIns plug_ins, const OpenRequest& request,
              const Communicator& comm)
-      : comm_(comm), log_(comm, std::cout, request.quiet ? LogLevel::quiet : LogLevel::normal) {
+      : comm_(comm),
+        log_(comm, std::cout, request.quiet ? LogLevel::quiet : LogLevel::normal),
+        plug_ins_(std::move(plug_ins)) {
     const ParameterList valid =
-        scene_parameters<dim>(registries, scene_fluid(document, request.settings));
+        scene_parameters<dim>(plug_ins_.of<dim>(), scene_fluid(document, request.settings));
     complete_scene(document, request.settings, valid, comm);
-    RunOptions options;
-    options.scene_file = request.scene;
-    options.output_directory = request.output;
-    options.restart_file = request.restart;
-    options.command_line = "Python";
-    simulation_ = std::make_unique<Simulation<dim>>(registries, document.list, options, comm, log_);
-    simulation_->begin();
+    scene_ = document.list;
+    options_.scene_file = request.text.empty() ? request.scene : "";
+    options_.output_directory = request.output;
+    options_.restart_file = request.restart;
+    options_.command_line = "Python";
+    reset();
   }
 
+  void reset() override {
+    tables_.clear();
+    simulation_.reset();  // lets go of the folder
+    simulation_ =
+        std::make_unique<Simulation<dim>>(plug_ins_.of<dim>(), scene_, options_, comm_, log_);
+    simulation_->begin();
+  }
   bool step() override { return simulation_->step(); }
   void end() override { simulation_->end(); }
   void stop(const std::string& message) override { simulation_->stop(message); }
   int dimension() const override { return dim; }
   double time() const override { return simulation_->time(); }
+  double time_step() const override {
+    return simulation_->report() ? simulation_->report()->dt : 0;
+  }
   long long n_steps() const override { return simulation_->n_steps(); }
   std::vector<std::pair<std::string, HistoryValue>> history() const override {
     return simulation_->history_row();
@@ -100,9 +136,20 @@ class SteppedRun : public AnyRun {
 
   std::vector<BodyNumbers> bodies() const override {
     std::vector<BodyNumbers> all;
-    for (const SolidState<dim>& state : solids().states())
-      all.push_back({state.name, state.center_of_mass, state.velocity, state.angular_velocity,
-                     state.mass, state.volume, state.kinetic_energy, state.elastic_energy});
+    for (const SolidState<dim>& state : solids().states()) {
+      BodyNumbers& body = all.emplace_back();
+      body.name = state.name;
+      body.position = state.center_of_mass;
+      body.velocity = state.velocity;
+      body.angular_velocity = state.angular_velocity;
+      body.mass = state.mass;
+      body.volume = state.volume;
+      body.kinetic_energy = state.kinetic_energy;
+      body.elastic_energy = state.elastic_energy;
+      add_forces(all.size() - 1, state.center_of_mass, body);
+    }
+    for (int m = 0; m < solids().n_models(); ++m)
+      add_orientations(solids().model(m), all);
     return all;
   }
 
@@ -125,7 +172,10 @@ class SteppedRun : public AnyRun {
                            body);
       }
     }
-    check_input(false, "There is no solid \"{}\".", body);
+    std::vector<std::string> names;
+    for (const SolidState<dim>& state : solids().states())
+      names.push_back(state.name);
+    throw InputError(unknown("solid", body, names));
   }
 
   void set_target(const std::string& joint, const std::vector<double>& q,
@@ -136,6 +186,40 @@ class SteppedRun : public AnyRun {
     check_finite(q, "target", joint);
     check_finite(rate, "rate", joint);
     steered->set_target(joint, time(), q, rate);
+  }
+
+  bool add_table(const std::string& name, const std::vector<HistoryColumn>& columns) override {
+    check_observer_name(name);
+    check_input(tables_.count(name) == 0 && !scene_.sublist("Observers").isParameter(name),
+                "There is an observer \"{}\" already; give this one another name.", name);
+    std::vector<HistoryColumn> all = {{"step", "1", "number of the step"},
+                                      {"time", "s", "at the end of the step"}};
+    all.insert(all.end(), columns.begin(), columns.end());
+    auto table =
+        std::make_unique<HistoryTable>(comm_, options_.output_directory + "/" + name + ".csv", all);
+    const bool goes_on = !options_.restart_file.empty() && !simulation_->report();
+    if (goes_on)
+      table->resume(n_steps());
+    else
+      table->start();
+    tables_[name] = std::move(table);
+    return !goes_on;
+  }
+  void append_row(const std::string& table, const std::vector<double>& values) override {
+    std::vector<HistoryValue> row = {n_steps(), time()};
+    row.insert(row.end(), values.begin(), values.end());
+    tables_.at(table)->append_row(row);
+  }
+
+  GridNumbers grid() const override {
+    std::vector<BoxFrame> boxes;
+    if (const auto* output = simulation_->components().fluid->output())
+      output->add_frame(boxes);
+    check_input(!boxes.empty(), "This fluid has no box of cells.");
+    const BoxFrame& box = boxes.front();
+    return {{box.n_cells.begin(), box.n_cells.begin() + dim},
+            {box.spacing.begin(), box.spacing.begin() + dim},
+            {box.origin.begin(), box.origin.begin() + dim}};
   }
 
   Samples sample(const Eigen::MatrixXd& points) const override {
@@ -171,9 +255,37 @@ class SteppedRun : public AnyRun {
  private:
   SolidSystem<dim>& solids() const { return *simulation_->components().solids; }
 
+  /// Zero before the first step. `number`: in the order of the states.
+  void add_forces(std::size_t number, const Point<dim>& center, BodyNumbers& body) const {
+    MeanForce<dim> fluid, contact;
+    if (const StepReport<dim>* report = simulation_->report()) {
+      fluid = mean_force<dim>(report->hydrodynamic_impulse[number], center, report->dt);
+      if (!report->contact_impulse.empty())
+        contact = mean_force<dim>(report->contact_impulse[number], center, report->dt);
+    }
+    body.force = fluid.force;
+    body.torque = fluid.torque;
+    body.contact_force = contact.force;
+    body.contact_torque = contact.torque;
+  }
+
+  static void add_orientations(const SolidModel<dim>& model, std::vector<BodyNumbers>& bodies) {
+    const JointableSolids<dim>* rigid = model.jointable();
+    for (std::size_t s = 0; rigid && s < model.solids().size(); ++s) {
+      for (BodyNumbers& body : bodies) {
+        if (body.name == model.solids()[s].name)
+          body.orientation = rigid->rigid_frame(static_cast<int>(s)).orientation.toRotationMatrix();
+      }
+    }
+  }
+
   Communicator comm_;
   Log log_;
+  PlugIns plug_ins_;
+  ParameterList scene_;  ///< complete and checked
+  RunOptions options_;
   std::unique_ptr<Simulation<dim>> simulation_;
+  std::map<std::string, std::unique_ptr<HistoryTable>> tables_;
 };
 
 }  // namespace
@@ -181,10 +293,11 @@ class SteppedRun : public AnyRun {
 std::unique_ptr<AnyRun> open_run(OpenRequest request) {
   const Communicator comm = Tpetra::getDefaultComm();
   PlugIns plug_ins = shipped_plug_ins();
-  Document document = open_scene(request.scene, request.plug_ins, request.settings, plug_ins, comm);
+  Document document =
+      open_scene(read_scene(request, comm), request.plug_ins, request.settings, plug_ins, comm);
   if (scene_dimension(document) == 2)
-    return std::make_unique<SteppedRun<2>>(std::move(document), plug_ins.plane, request, comm);
-  return std::make_unique<SteppedRun<3>>(std::move(document), plug_ins.space, request, comm);
+    return std::make_unique<SteppedRun<2>>(std::move(document), std::move(plug_ins), request, comm);
+  return std::make_unique<SteppedRun<3>>(std::move(document), std::move(plug_ins), request, comm);
 }
 
 }  // namespace lockstep

@@ -14,17 +14,28 @@ namespace lockstep {
 
 /// Arguments with which Python opens a run; see `simulate --help`.
 struct OpenRequest {
-  std::string scene, output, restart;
+  std::string scene;             ///< path, or what stands for it in messages where `text` is given
+  std::string text;              ///< XML in place of a file; empty: there is a file
+  bool from_dictionary = false;  ///< `text` was made from one: it has no lines to name
+  std::string output, restart;
   std::vector<std::string> settings;  ///< "List/Name=value"
   std::vector<std::string> plug_ins;  ///< libraries to load, beside those that the scene names
   bool quiet = true;
 };
 
-/// A solid in numbers; angular velocities have one entry in 2D. [SI]
+/// A solid in numbers; angular velocities and torques have one entry in 2D. [SI]
 struct BodyNumbers {
   std::string name;
   Eigen::VectorXd position, velocity, angular_velocity;
+  Eigen::MatrixXd orientation;  ///< rotation matrix; empty if the solid is not rigid
+  Eigen::VectorXd force, torque, contact_force, contact_torque;  ///< as in bodies.csv
   double mass = 0, volume = 0, kinetic_energy = 0, elastic_energy = 0;
+};
+
+/// The box of cells that `AnyRun::fields` are on.
+struct GridNumbers {
+  std::vector<int> cells;               ///< number along x, y(, z)
+  std::vector<double> spacing, origin;  ///< size of a cell and lower corner [m]
 };
 
 /// The fluid at points, one row each.
@@ -52,10 +63,14 @@ class AnyRun {
   /// Ends the run in place of `end` after an exception of the script; see Simulation::stop. Not
   /// collective.
   virtual void stop(const std::string& message) = 0;
+  /// Back to where the run was opened; the files that it wrote are those of the new run from then
+  /// on. Tables of `add_table` are gone.
+  virtual void reset() = 0;
 
-  virtual int dimension() const = 0;                                              ///< Local.
-  virtual double time() const = 0;                                                ///< Local.
-  virtual long long n_steps() const = 0;                                          ///< Local.
+  virtual int dimension() const = 0;      ///< Local.
+  virtual double time() const = 0;        ///< Local.
+  virtual double time_step() const = 0;   ///< length of the last step [s]; 0 before it. Local.
+  virtual long long n_steps() const = 0;  ///< Local.
   virtual std::vector<std::pair<std::string, HistoryValue>> history() const = 0;  ///< Local.
   virtual std::vector<BodyNumbers> bodies() const = 0;
   virtual std::vector<JointState> joints() const = 0;  ///< Local.
@@ -66,6 +81,12 @@ class AnyRun {
   virtual void set_target(const std::string& joint, const std::vector<double>& q,
                           const std::vector<double>& rate) = 0;
 
+  /// Begins OUTPUT/NAME.csv behind the columns `step` and `time`, or goes on with it in a run that
+  /// was opened from a checkpoint. True if it is a new one, which wants a row of the present.
+  virtual bool add_table(const std::string& name, const std::vector<HistoryColumn>& columns) = 0;
+  virtual void append_row(const std::string& table, const std::vector<double>& values) = 0;
+
+  virtual GridNumbers grid() const = 0;
   virtual Samples sample(const Eigen::MatrixXd& points) const = 0;
   virtual std::map<std::string, WholeField> fields() const = 0;
   virtual std::vector<SurfaceFrame> surfaces() const = 0;

@@ -7,6 +7,8 @@
 
 #include "articulated/articulation.hpp"
 #include "base/errors.hpp"
+#include "parameters/strict_values.hpp"
+#include "parameters/suggestion.hpp"
 
 namespace lockstep {
 
@@ -236,7 +238,13 @@ std::pair<Joint<dim>*, int> joint_named(std::vector<Joint<dim>>& joints, const s
         return {&joint, k};
     }
   }
-  throw InputError(fmt::format("There is no joint \"{}\".", name));
+  std::vector<std::string> names;
+  for (const Joint<dim>& joint : joints)
+    names.push_back(joint.name);
+  const std::string nearest = nearest_name(name, names);
+  throw InputError(fmt::format("There is no joint \"{}\".{} There are: {}.", name,
+                               nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest),
+                               quoted_list(names)));
 }
 
 /// A straight line through `place` at `time`.

@@ -39,7 +39,8 @@ void create_output_directory(const Communicator& comm, const std::string& direct
 void record_input(const Communicator& comm, const std::string& directory,
                   const std::string& input_path, const std::string& used_parameters) {
   on_root(comm, [&] {
-    write_file_atomically(directory + "/input.xml", read_whole_file(input_path));
+    write_file_atomically(directory + "/input.xml",
+                          input_path.empty() ? used_parameters : read_whole_file(input_path));
     write_file_atomically(directory + "/used-parameters.xml", used_parameters);
   });
 }

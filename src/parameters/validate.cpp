@@ -28,6 +28,11 @@ std::string description(const ParameterEntry& valid) {
   }
 }
 
+bool is_numeric(ValueType type) {
+  return type == ValueType::real || type == ValueType::integer || type == ValueType::reals ||
+         type == ValueType::integers;
+}
+
 /// Lists are validated in place, so that references into the given list stay alive.
 class Validator {
  public:
@@ -41,6 +46,7 @@ class Validator {
         if (!valid_entry)
           throw InputError(unknown_name(source_.place(join_path(path, name)), path, name, valid));
         take_formulas(given, *valid_entry, name, path);
+        take_number(given, *valid_entry, name);
         given.getEntryPtr(name)->setDocString(valid_entry->docString());
         check_entry(entry, *valid_entry, name, path);
       });
@@ -93,6 +99,20 @@ class Validator {
     given.setEntry(name, as_strings(formula));
   }
 
+  /// Gives a number, or an array of them, the declared type if its source does not tell types.
+  void take_number(ParameterList& given, const ParameterEntry& valid,
+                   const std::string& name) const {
+    const ParameterEntry& entry = given.getEntry(name);
+    if (!source_.mixes_numbers || !is_numeric(value_type(entry)) ||
+        !is_numeric(value_type(valid)) || value_type(entry) == value_type(valid))
+      return;
+    try {
+      given.setEntry(name, parse_value(value_type(valid), value_text(entry)));
+    } catch (const InputError&) {
+      return;  // `check_entry` tells of it
+    }
+  }
+
   /// True if formulas stand in place of numbers. Throws InputError for one that cannot be read.
   bool are_formulas(const ParameterEntry& entry, const ParameterEntry& valid,
                     const std::string& name, const std::string& path) const {
@@ -120,16 +140,22 @@ class Validator {
     check_input(!entry.isList() || valid.isList(), "{} must be a parameter ({}), not a list.",
                 subject(path, name), type_name(wanted));
     check_input(type == wanted || are_formulas(entry, valid, name, path),
-                "{} has type \"{}\", but needs \"{}\": write type=\"{}\"{}.", subject(path, name),
-                type_name(type), type_name(wanted), type_name(wanted),
-                type == ValueType::integer && wanted == ValueType::real
-                    ? fmt::format(" value=\"{}\"", value_text(entry))
-                    : "");
+                "{} has type \"{}\", but needs \"{}\"{}.", subject(path, name), type_name(type),
+                type_name(wanted), advice(entry, wanted));
     if (entry.isList() || entry.isType<Formula>())  // a formula of a constant that is a mistake
       return;
     const std::string violation = value_rule(valid).violation(entry);
     check_input(violation.empty(), "{} {}{}", subject(path, name), violation,
                 violation.empty() || violation.back() == '?' ? "" : ".");
+  }
+
+  /// The end of the sentence about a wrong type. A dictionary of Python has no attributes.
+  std::string advice(const ParameterEntry& entry, ValueType wanted) const {
+    if (source_.mixes_numbers)
+      return fmt::format(", and is {}", quoted_value(entry));
+    const bool is_integer = final_type(entry) == ValueType::integer && wanted == ValueType::real;
+    return fmt::format(": write type=\"{}\"{}", type_name(wanted),
+                       is_integer ? fmt::format(" value=\"{}\"", value_text(entry)) : "");
   }
 
   void fill_in(ParameterList& given, const ParameterEntry& valid, const std::string& name,

@@ -10,7 +10,12 @@ namespace lockstep {
 Document open_scene(const std::string& file, const std::vector<std::string>& libraries,
                     std::vector<std::string>& settings, PlugIns& plug_ins,
                     const Communicator& comm) {
-  Document document = read_xml(file, comm, FormulaPolicy::kept);
+  return open_scene(read_xml(file, comm, FormulaPolicy::kept), libraries, settings, plug_ins, comm);
+}
+
+Document open_scene(Document document, const std::vector<std::string>& libraries,
+                    std::vector<std::string>& settings, PlugIns& plug_ins,
+                    const Communicator& comm) {
   include_scenes(document, settings, comm);
   add_plug_in_files(libraries, document);
   load_plug_ins(plug_in_files(document), plug_ins, comm);

@@ -15,5 +15,9 @@ namespace lockstep {
 Document open_scene(const std::string& file, const std::vector<std::string>& libraries,
                     std::vector<std::string>& settings, PlugIns& plug_ins,
                     const Communicator& comm);
+/// Likewise a scene that was read already, with FormulaPolicy::kept.
+Document open_scene(Document document, const std::vector<std::string>& libraries,
+                    std::vector<std::string>& settings, PlugIns& plug_ins,
+                    const Communicator& comm);
 
 }  // namespace lockstep

@@ -19,7 +19,7 @@ namespace lockstep {
 
 /// Options of a run: where it writes and how it starts.
 struct RunOptions {
-  std::string scene_file;
+  std::string scene_file;  ///< empty: none; then paths of files are relative to where it runs
   std::string output_directory;
   std::string restart_file;        ///< empty: from the scene's start
   std::string command_line;        ///< for the banner

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 CODE_FOLDERS = ["src", "packages", "drivers", "tests", "template"]
-TEXT_FOLDERS = CODE_FOLDERS + ["cmake", "docs", "tools", "xml-params", ".ci"]
-TEXT_SUFFIXES = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".py", ".sh", ".xml", ".json", ".js", ".css", ".html", ""}
+TEXT_FOLDERS = CODE_FOLDERS + ["cmake", "docs", "notebooks", "tools", "xml-params", ".ci"]
+TEXT_SUFFIXES = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".py", ".pyi", ".ipynb", ".toml", ".sh", ".xml", ".json", ".js", ".css", ".html", ""}
 
 # The sibling packages that a package may include.
 SIBLINGS = {

@@ -10,19 +10,6 @@
 namespace lockstep {
 namespace {
 
-void check_name(const std::string& name) {
-  const auto allowed = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == ' ' || c == '-' || c == '_';
-  };
-  check_input(std::all_of(name.begin(), name.end(), allowed) && name.size() <= 100,
-              "In \"Observers\", \"{}\" cannot be the name of a file; use letters, digits, blanks, "
-              "- and _.",
-              name.substr(0, 100));
-  check_input(name != "history" && name != "bodies" && name != "joints",
-              "In \"Observers\", \"{}\" is the name of a table that runs have; take another.",
-              name);
-}
-
 std::vector<HistoryColumn> table_columns(const std::vector<ObservedColumn>& observed) {
   std::vector<HistoryColumn> columns = {{"step", "1", "number of the step"},
                                         {"time", "s", "at the end of the step"}};
@@ -45,12 +32,25 @@ std::string group_of(const std::string& key) {
 
 }  // namespace
 
+void check_observer_name(const std::string& name) {
+  const auto allowed = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == ' ' || c == '-' || c == '_';
+  };
+  check_input(std::all_of(name.begin(), name.end(), allowed) && name.size() <= 100,
+              "In \"Observers\", \"{}\" cannot be the name of a file; use letters, digits, blanks, "
+              "- and _.",
+              name.substr(0, 100));
+  check_input(name != "history" && name != "bodies" && name != "joints" && name != "lines",
+              "In \"Observers\", \"{}\" is the name of a table that runs have; take another.",
+              name);
+}
+
 template <int dim>
 ObserverTables<dim>::ObserverTables(const ObserverRegistry<dim>& registry,
                                     const ParameterList& observers, const Communicator& comm,
                                     const std::string& directory, double start_time) {
   for (const auto& [name, entry] : entries(observers)) {
-    check_name(name);
+    check_observer_name(name);
     const ParameterList& list = observers.sublist(name);
     Watch watch{name, list.get<std::string>("Type"), {start_time, list.get<double>("Interval")}};
     watch.observer = registry.create(watch.type, list);

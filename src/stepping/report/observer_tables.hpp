@@ -9,6 +9,10 @@
 
 namespace lockstep {
 
+/// Throws InputError for a name of an observer that cannot be that of a file, or is that of another
+/// table.
+void check_observer_name(const std::string& name);
+
 /// The observers of a scene and their tables, one NAME.csv each in the output folder.
 template <int dim>
 class ObserverTables {

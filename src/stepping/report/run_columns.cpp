@@ -227,6 +227,19 @@ std::vector<TableColumn<HistoryRow<dim>>> history_columns(
 }
 
 template <int dim>
+MeanForce<dim> mean_force(const Momentum<dim>& impulse, const Point<dim>& center, double dt) {
+  const AngularVector<dim> moved = cross<dim>(center, impulse.linear);
+  return {impulse.linear / dt, (impulse.angular - moved) / dt};
+}
+
+namespace {
+template <int dim>
+MeanForce<dim> of_row(const BodyRow<dim>& row, const Momentum<dim>& impulse) {
+  return mean_force<dim>(impulse, row.state.center_of_mass, row.report.dt);
+}
+}  // namespace
+
+template <int dim>
 std::vector<TableColumn<BodyRow<dim>>> body_columns() {
   using Row = BodyRow<dim>;
   Columns<Row> columns = step_and_time<Row>();
@@ -239,15 +252,9 @@ std::vector<TableColumn<BodyRow<dim>>> body_columns() {
                     [](const Row& row) { return row.state.angular_velocity; });
   const auto add = [&](const std::string& prefix, const std::string& what, auto impulse_of) {
     add_vector<dim>(columns, prefix + "f", "N", what + " force, mean over the step",
-                    [impulse_of](const Row& row) {
-                      return Point<dim>(impulse_of(row).linear / row.report.dt);
-                    });
+                    [impulse_of](const Row& row) { return of_row(row, impulse_of(row)).force; });
     add_rotation<dim>(columns, prefix + "t", "N m", what + " torque about the centre of mass",
-                      [impulse_of](const Row& row) {
-                        const Momentum<dim> impulse = impulse_of(row);
-                        const auto moved = cross<dim>(row.state.center_of_mass, impulse.linear);
-                        return AngularVector<dim>((impulse.angular - moved) / row.report.dt);
-                      });
+                      [impulse_of](const Row& row) { return of_row(row, impulse_of(row)).torque; });
   };
   add("", "hydrodynamic", [](const Row& row) { return row.impulse; });
   add("contact_", "contact's and joint limits'", [](const Row& row) { return row.of_contact; });
@@ -306,6 +313,8 @@ template std::vector<TableColumn<HistoryRow<2>>> history_columns(
     const std::optional<LiquidColumns>&);
 template std::vector<TableColumn<HistoryRow<3>>> history_columns(
     const std::optional<LiquidColumns>&);
+template MeanForce<2> mean_force(const Momentum<2>&, const Point<2>&, double);
+template MeanForce<3> mean_force(const Momentum<3>&, const Point<3>&, double);
 template std::vector<TableColumn<BodyRow<2>>> body_columns();
 template std::vector<TableColumn<BodyRow<3>>> body_columns();
 template std::vector<TableColumn<JointRow<2>>> joint_columns();

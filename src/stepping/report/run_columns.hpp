@@ -33,6 +33,16 @@ struct BodyRow {
   Momentum<dim> of_contact;      ///< likewise, by contacts and limits of joints
 };
 
+/// Force [N] and torque about a point [N m], means over a step.
+template <int dim>
+struct MeanForce {
+  Point<dim> force = Point<dim>::Zero();
+  AngularVector<dim> torque = AngularVector<dim>::Zero();
+};
+/// Returns the mean of an impulse over dt [s], which is angular about the origin, about `center`.
+template <int dim>
+MeanForce<dim> mean_force(const Momentum<dim>& impulse, const Point<dim>& center, double dt);
+
 /// Source of a row of joints.csv: a step and a coordinate.
 template <int dim>
 struct JointRow {

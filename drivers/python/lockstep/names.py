@@ -1,0 +1,19 @@
+"""Dictionaries that answer an unknown name with the near one."""
+from typing import Any, Dict
+
+from ._core import nearest_name
+
+
+class Named(Dict[str, Any]):
+    """A dictionary whose KeyError says which names there are, and which of them was meant."""
+
+    def __init__(self, kind: str, content: Dict[str, Any]) -> None:
+        super().__init__(content)
+        self._kind = kind
+
+    def __missing__(self, name: str) -> Any:
+        names = [str(known) for known in self]
+        nearest = nearest_name(str(name), names)
+        meant = f' Did you mean "{nearest}"?' if nearest else ""
+        known = ", ".join(f'"{one}"' for one in names) or "none"
+        raise KeyError(f'There is no {self._kind} "{name}".{meant} There are: {known}.')
