@@ -13,8 +13,8 @@ namespace lockstep {
 /// cannot be created or written to, or if its "frames" is a link or a file.
 void create_output_directory(const Communicator& comm, const std::string& directory);
 
-/// DIRECTORY/input.xml, a byte copy of the scene file, and used-parameters.xml, the complete list
-/// with all defaults. Throws OutputError.
+/// DIRECTORY/input.xml, a byte copy of the scene file (input.yaml of one in YAML), and
+/// used-parameters.xml, the complete list with all defaults. Throws OutputError.
 void record_input(const Communicator& comm, const std::string& directory,
                   const std::string& input_path, const std::string& used_parameters);
 
