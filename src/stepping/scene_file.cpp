@@ -14,7 +14,7 @@
 #include "parameters/command_line.hpp"
 #include "parameters/mistakes.hpp"
 #include "parameters/parameter_rule.hpp"
-#include "parameters/strict_xml.hpp"
+#include "parameters/untyped.hpp"
 #include "parameters/validate.hpp"
 #include "solve/solver_file.hpp"
 
@@ -95,6 +95,7 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
     keep_mistakes(document.list.sublist("Solver"), "File", [&] {
       merge(document, "Solver/Strategy",
             read_solver_file(resolve_path(document.source.file, file), comm));
+      assign_types(document.list, valid, document.source, FormulaPolicy::refused);
     });
   Mistakes mistakes;
   check_strategy(document);
