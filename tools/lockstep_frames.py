@@ -27,7 +27,7 @@ class NoFrames(FramesError):
     """The run has written none, or none yet."""
 
 
-# What h5py and numpy throw at damaged files: which of them is a matter of where the damage is.
+# Exceptions of h5py and numpy at damaged files: which of them is a matter of where the damage is.
 DAMAGES = (OSError, KeyError, ValueError, TypeError, RuntimeError, OverflowError)
 
 

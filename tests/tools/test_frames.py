@@ -142,7 +142,7 @@ def rewritten(old, new):
     return damage
 
 
-LAST = "/frame-000001"  # which all of these tools read
+LAST = "/frame-000001"  # the frame that all of these tools read
 # Damages, what the message says beside the file, and whether they are of the solid alone.
 DAMAGES = {
     "cut short": (lambda folder: cut_short(folder / "frames.h5"), "frames.h5: cannot read", False),
