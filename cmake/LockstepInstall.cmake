@@ -21,6 +21,7 @@ set(tools_folder "${PROJECT_SOURCE_DIR}/tools")
 install(PROGRAMS "${tools_folder}/report" "${tools_folder}/watch" "${tools_folder}/render"
                  "${tools_folder}/plot-frame" "${tools_folder}/plot-study" "${tools_folder}/plot-curves"
                  "${tools_folder}/export-meshes" "${tools_folder}/export-volumes" "${tools_folder}/urdf-to-scene"
+                 "${tools_folder}/xml-to-yaml"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/lockstep/tools")
 install(FILES "${tools_folder}/lockstep_frames.py" "${tools_folder}/plot_style.py" "${tools_folder}/run_parameters.py" "${tools_folder}/robot.py"
               "${tools_folder}/render_with_paraview.py" "${tools_folder}/virtual_screen.py" "${tools_folder}/movies.py"

@@ -16,6 +16,6 @@ set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "openmpi-bin, python3, python3-h5py, python3-numpy, python3-scipy, python3-matplotlib, libjs-three")
 # For projects that say find_package(Lockstep).
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
-    "cmake, g++, trilinos-all-dev, libptscotch-dev, libopenmpi-dev, libhdf5-openmpi-dev, zlib1g-dev, libeigen3-dev, libmetis-dev, libboost-dev, libexpat1-dev, libtinyobjloader-dev, nlohmann-json3-dev, libfmt-dev, libcli11-dev, libmuparser-dev")
+    "cmake, g++, trilinos-all-dev, libptscotch-dev, libopenmpi-dev, libhdf5-openmpi-dev, zlib1g-dev, libeigen3-dev, libmetis-dev, libboost-dev, libexpat1-dev, libyaml-cpp-dev, libtinyobjloader-dev, nlohmann-json3-dev, libfmt-dev, libcli11-dev, libmuparser-dev")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "paraview, python3-meshio, ffmpeg")
 include(CPack)

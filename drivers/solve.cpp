@@ -22,6 +22,7 @@
 #include "base/shortened.hpp"
 #include "output/on_root.hpp"
 #include "output/run_record.hpp"
+#include "parameters/mistakes.hpp"
 #include "parameters/validate.hpp"
 #include "programs/load_plug_ins.hpp"
 #include "shipped/shipped_plug_ins.hpp"
@@ -54,6 +55,8 @@ ParameterList strategy_list(const std::string& file, const StrategyRegistry& str
                             double& tolerance, const Communicator& comm) {
   Document document = read_solver_file(file, comm);
   const bool nested = document.list.isSublist("Strategy");
+  if (document.list.isParameter("Tolerance"))
+    check_readable(document.list.getEntry("Tolerance"));
   const bool is_given = nested && document.list.isType<double>("Tolerance");
   if (is_given)
     tolerance = document.list.get<double>("Tolerance");

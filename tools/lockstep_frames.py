@@ -7,6 +7,7 @@
 Only the index is read at once; arrays are opened when asked for. All of tools/ reads frames with this; a program of one's
 own may have a copy of this file, which needs h5py and numpy alone.
 """
+import math
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,7 +20,15 @@ ELEMENTS = " elements"  # the mesh of the solid "Flag" is "Flag elements"
 
 
 class FramesError(Exception):
-    """The run's folder lacks something; the message says what and where."""
+    """The run's folder lacks something, or something in it is damaged; the message says what and where."""
+
+
+class NoFrames(FramesError):
+    """The run has written none, or none yet."""
+
+
+# Exceptions of h5py and numpy at damaged files: which of them is a matter of where the damage is.
+DAMAGES = (OSError, KeyError, ValueError, TypeError, RuntimeError, OverflowError)
 
 
 @dataclass
@@ -28,17 +37,36 @@ class Array:
     text: str
     folder: Path
     in_file: bool
+    n_values: int
 
     def read(self, selection=()):
         """The values, or only those of a selection such as (3, slice(None))."""
         if not self.in_file:
             return numpy.array(self.text.split(), dtype=float)[selection]
-        dataset = self.text.strip().rsplit(":", 1)[1]
+        return self._with_dataset(lambda dataset: dataset[selection])
+
+    def check(self):
+        """Throws FramesError unless the values are there, without reading them."""
+        if self.in_file:
+            self._with_dataset(lambda dataset: None)
+
+    def _with_dataset(self, function):
+        name = self.text.strip().rsplit(":", 1)[1]
+        if not self.path.is_file():
+            raise FramesError(f"{self.path}, which frames.xmf names, is not there; was it moved or removed?")
         try:
             with h5py.File(self.path, "r") as file:
-                return file[dataset][selection]
-        except (OSError, KeyError) as error:
-            raise FramesError(f"{self.path}: cannot read '{dataset}' ({error}).") from error
+                dataset = file.get(name)
+                if not isinstance(dataset, h5py.Dataset):
+                    raise FramesError(f"{self.path} holds no dataset '{name}', which frames.xmf names; the files are of two runs, or damaged.")
+                if dataset.dtype.kind not in "fiu" or dataset.size != self.n_values:
+                    what = f"{dataset.size or 0} values" if dataset.dtype.kind in "fiu" else "no numbers"
+                    raise FramesError(f"{self.path}: '{name}' holds {what}, but frames.xmf says {self.n_values} numbers; "
+                                      "the files are of two runs, or damaged.")
+                return function(dataset)
+        except DAMAGES as error:
+            reason = " ".join(str(error).split())
+            raise FramesError(f"{self.path}: cannot read '{name}'; the file is cut short, damaged or no HDF5 file ({reason}).") from error
 
     @property
     def path(self):
@@ -66,7 +94,12 @@ class Grid:
 
     def cells(self):
         """Vertex numbers of a surface or volume (n, corners)."""
-        return self.simplices.read().astype(int).reshape(-1, self.n_corners)
+        cells = self.simplices.read().astype(int).reshape(-1, self.n_corners)
+        n_vertices = self.vertices.n_values // 3
+        if cells.size and (cells.min() < 0 or cells.max() >= n_vertices):
+            raise FramesError(f"{self.simplices.path}: '{self.name}' has the vertex number {cells.max() if cells.min() >= 0 else cells.min()}, "
+                              f"but {n_vertices} vertices, from 0; the file is damaged.")
+        return cells
 
     def centres(self):
         """Centres of a box's cells: their x, their y and their z [m]."""
@@ -95,6 +128,13 @@ class Frame:
     def names(self):
         return [grid.name for grid in self.grids]
 
+    def check(self):
+        """Throws FramesError unless all arrays of the frame can be read: for programs that read the files themselves."""
+        for grid in self.grids:
+            for array in (grid.vertices, grid.simplices, *(field[0] for field in grid.fields.values())):
+                if array is not None:
+                    array.check()
+
     @property
     def boxes(self):
         return [grid for grid in self.grids if grid.is_box]
@@ -121,7 +161,7 @@ class Frame:
 def index_path(output_directory):
     path = Path(output_directory) / "frames.xmf"
     if not path.is_file():
-        raise FramesError(f"{output_directory} holds no frames.xmf: is it the output folder of a run?")
+        raise NoFrames(f"{output_directory} holds no frames.xmf: is it the output folder of a run?")
     return path.resolve()
 
 
@@ -133,11 +173,14 @@ def read_frames(output_directory):
     except ElementTree.ParseError as error:
         raise FramesError(f"{path} is not proper XML: {error}.") from error
     frames = []
-    for collection in tree.getroot().iter("Grid"):
-        if collection.get("CollectionType") == "Temporal":
-            frames += [_frame(element, path.parent) for element in collection.findall("Grid")]
+    try:
+        for collection in tree.getroot().iter("Grid"):
+            if collection.get("CollectionType") == "Temporal":
+                frames += [_frame(element, path.parent) for element in collection.findall("Grid")]
+    except (AttributeError, *DAMAGES) as error:
+        raise FramesError(f"{path} is no index of frames as a run writes it ({error}); is it damaged?") from error
     if not frames:
-        raise FramesError(f"{path} lists no frame: the run wrote none yet.")
+        raise NoFrames(f"{path} lists no frame: the run wrote none yet.")
     return sorted(frames, key=lambda frame: frame.time)
 
 
@@ -149,7 +192,11 @@ def _frame(element, folder):
 
 
 def _array(item, folder):
-    return Array(item.text, folder, item.get("Format", "XML") == "HDF")
+    sizes = [int(word) for word in item.get("Dimensions").split()]
+    array = Array(item.text, folder, item.get("Format", "XML") == "HDF", math.prod(sizes))
+    if array.in_file and ":" not in array.text:
+        raise ValueError(f"'{array.text.strip()[:60]}' names no dataset")
+    return array
 
 
 def _grid(element, folder):
@@ -168,11 +215,20 @@ def _grid(element, folder):
         grid.dim = 2 if grid.n_corners == 2 else 3
         grid.vertices = _array(items[0], folder)
         grid.simplices = _array(topology.find("DataItem"), folder)
+        _check_size(grid, "simplices", grid.simplices, int(topology.get("NumberOfElements")) * grid.n_corners)
+        _check_size(grid, "vertices", grid.vertices, grid.vertices.n_values // 3 * 3)
     for attribute in element.findall("Attribute"):
-        grid.fields[attribute.get("Name")] = (_array(attribute.find("DataItem"), folder),
-                                              attribute.get("Center", "Node"),
-                                              attribute.get("AttributeType") == "Vector")
+        name, is_vector = attribute.get("Name"), attribute.get("AttributeType") == "Vector"
+        values = _array(attribute.find("DataItem"), folder)
+        if grid.is_box:
+            _check_size(grid, name, values, math.prod(grid.n_cells) * (3 if is_vector else 1))
+        grid.fields[name] = (values, attribute.get("Center", "Node"), is_vector)
     return grid
+
+
+def _check_size(grid, name, array, n_values):
+    if array.n_values != n_values:
+        raise ValueError(f"'{name}' of '{grid.name}' has {array.n_values} values in place of {n_values}")
 
 
 def choose_frame(frames, number=None, time=None):

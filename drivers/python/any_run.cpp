@@ -9,8 +9,9 @@
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/steering.hpp"
 #include "output/progress.hpp"
+#include "parameters/files/parameter_file.hpp"
+#include "parameters/files/strict_xml.hpp"
 #include "parameters/strict_values.hpp"
-#include "parameters/strict_xml.hpp"
 #include "parameters/suggestion.hpp"
 #include "programs/open_scene.hpp"
 #include "scenes/expand_scene.hpp"
@@ -86,7 +87,7 @@ std::string unknown(const char* kind, const std::string& name,
 
 Document read_scene(const OpenRequest& request, const Communicator& comm) {
   if (request.text.empty())
-    return read_xml(request.scene, comm, FormulaPolicy::kept);
+    return read_parameters(request.scene, comm, FormulaPolicy::kept);
   Document document = read_xml_string(request.text, request.scene, FormulaPolicy::kept);
   if (request.from_dictionary) {
     document.source.places.clear();

@@ -169,12 +169,18 @@ typename GaussSeidelContact<dim>::Outcome GaussSeidelContact<dim>::act(
   report.limit_impulses = problem.limit_impulses(solver);
 
   const RCP<const Vector> impulse = distributed(solids, solver.generalized_impulse());
+  const auto free = rcp(new Vector(*impulse, Teuchos::Copy));
+  solids.reduction().drop_given(*free);
+  if (solids.reduction().has_given()) {
+    const auto on_given = rcp(new Vector(*impulse, Teuchos::Copy));
+    on_given->update(-1, *free, 1);
+    report.impulse_on_given = on_given;
+  }
+  report.on_prescribed = decides ? solver.held_pushes() : solver.pushes();
   if (response) {
-    const auto free = rcp(new Vector(*impulse, Teuchos::Copy));
-    solids.reduction().drop_given(*free);
     report.impulse = free;
     report.held = problem.held_rows(solver);
-    report.sliding = solver.sliding_impulse();
+    report.sliding = solver.sliding_impulse(report.sliding_on_given);
   }
   std::vector<double> resolved = solver.velocity();
   if (phase == ContactPhase::position && !decides) {

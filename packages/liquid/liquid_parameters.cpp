@@ -9,6 +9,7 @@
 #include "geometry/surface_snapshot.hpp"
 #include "liquid/watch/watch.hpp"
 #include "parameters/field_formula.hpp"
+#include "parameters/mistakes.hpp"
 #include "staggered/domain/parameter_values.hpp"
 #include "staggered/domain/region_shape.hpp"
 
@@ -242,15 +243,19 @@ std::vector<SignedDistance<dim>> read_shapes(const ParameterList& list, const st
                                              const Point<dim>& gravity) {
   const ParameterList& shapes = list.sublist(kind);
   std::vector<SignedDistance<dim>> parts;
+  Mistakes mistakes;
   for (auto it = shapes.begin(); it != shapes.end(); ++it) {
     const std::string name = kind + "/" + shapes.name(it);
     const ParameterList& shape = shapes.sublist(shapes.name(it));
     const auto type = shape.get<std::string>("Type");
-    parts.push_back(type == "level"  ? level<dim>(name, shape, gravity)
-                    : type == "box"  ? box<dim>(name, shape)
-                    : type == "mesh" ? mesh<dim>(name, shape)
-                                     : ball<dim>(shape));
+    mistakes.collect([&] {
+      parts.push_back(type == "level"  ? level<dim>(name, shape, gravity)
+                      : type == "box"  ? box<dim>(name, shape)
+                      : type == "mesh" ? mesh<dim>(name, shape)
+                                       : ball<dim>(shape));
+    });
   }
+  mistakes.throw_all();
   return parts;
 }
 
@@ -267,8 +272,11 @@ double nearest_of(const std::vector<SignedDistance<dim>>& parts, const Point<dim
 template <int dim>
 SignedDistance<dim> read_liquid(const ParameterList& fluid, const Point<dim>& gravity) {
   const ParameterList& list = fluid.sublist("Free Surface");
-  auto parts = read_shapes<dim>(list, "Liquid", gravity);
-  auto bubbles = read_shapes<dim>(list, "Bubbles", gravity);
+  std::vector<SignedDistance<dim>> parts, bubbles;
+  Mistakes mistakes;
+  mistakes.collect([&] { parts = read_shapes<dim>(list, "Liquid", gravity); });
+  mistakes.collect([&] { bubbles = read_shapes<dim>(list, "Bubbles", gravity); });
+  mistakes.throw_all();
   const ParameterList& sources = fluid.sublist("Sources");
   bool has_source = false;
   for (auto it = sources.begin(); it != sources.end(); ++it)
@@ -332,10 +340,13 @@ template <int dim>
 std::vector<SignedDistance<dim>> read_sinks(const ParameterList& list) {
   const ParameterList& sinks = list.sublist("Sinks");
   std::vector<SignedDistance<dim>> shapes;
+  Mistakes mistakes;
   for (auto it = sinks.begin(); it != sinks.end(); ++it)
-    shapes.push_back([shape = read_shape<dim>(sinks.sublist(sinks.name(it)))](const Point<dim>& x) {
-      return shape.distance(x);
+    mistakes.collect([&] {
+      const auto shape = read_shape<dim>(sinks.sublist(sinks.name(it)));
+      shapes.push_back([shape](const Point<dim>& x) { return shape.distance(x); });
     });
+  mistakes.throw_all();
   return shapes;
 }
 

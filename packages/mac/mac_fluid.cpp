@@ -410,9 +410,13 @@ Point<dim> MacFluid<dim>::wall_velocity(int axis, int end, double time) const {
 
 template <int dim>
 bool MacFluid<dim>::is_periodic() const {
-  const auto& sides = flow_.domain.boundary.sides;
-  return std::any_of(sides.begin(), sides.end(),
-                     [](const auto& ends) { return ends[0].type == SideType::periodic; });
+  const std::array<bool, dim> axes = periodic_axes();
+  return std::find(axes.begin(), axes.end(), true) != axes.end();
+}
+
+template <int dim>
+std::array<bool, dim> MacFluid<dim>::periodic_axes() const {
+  return flow_.domain.grid.description().periodic;
 }
 
 template <int dim>

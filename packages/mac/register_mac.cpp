@@ -1,8 +1,27 @@
 #include "mac/register_mac.hpp"
 
 #include "mac/mac_fluid.hpp"
+#include "mac/state/fluid_mistakes.hpp"
 
 namespace lockstep {
+
+namespace {
+/// Makes the fluid. Throws InputError with the mistakes of all its parts.
+template <int dim>
+std::unique_ptr<FluidDiscretization<dim>> make_fluid(const ParameterList& list,
+                                                     const ParameterList& domain,
+                                                     const Communicator& comm,
+                                                     const InterfaceRegistry<dim>* interfaces) {
+  std::unique_ptr<FluidDiscretization<dim>> fluid;
+  Mistakes mistakes;
+  mistakes.collect(
+      [&] { fluid = std::make_unique<MacFluid<dim>>(list, domain, comm, interfaces); });
+  if (!fluid)
+    find_fluid_mistakes<dim>(list, domain, mistakes);
+  mistakes.throw_all();
+  return fluid;
+}
+}  // namespace
 
 template <int dim>
 void register_mac(
@@ -13,7 +32,7 @@ void register_mac(
       [interfaces] { return mac_parameters<dim>(interfaces.get()); },
       [interfaces](const ParameterList& list, const ParameterList& domain,
                    const Communicator& comm) {
-        return std::make_unique<MacFluid<dim>>(list, domain, comm, interfaces.get());
+        return make_fluid<dim>(list, domain, comm, interfaces.get());
       });
 }
 

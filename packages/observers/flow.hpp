@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "interfaces/observer.hpp"
 #include "parameters/parameter_list.hpp"
 
@@ -8,9 +10,19 @@ namespace lockstep {
 template <int dim>
 ParameterList flow_parameters();
 
-/// Volume that flows through a window at right angles to an axis, by the midpoint rule over squares
-/// of at most the fluid's h; what solids cover lets nothing through, and a face that they cover in
-/// part the open part.
+/// A line in the plane, a parallelogram in space.
+template <int dim>
+struct Window {
+  Point<dim> corner = Point<dim>::Zero();
+  std::array<Point<dim>, dim - 1> edges{};  ///< from the corner [m]
+
+  /// Vector at right angles to it, as long as it is large: to the right of a line, along the cross
+  /// product of the two edges.
+  Point<dim> area_vector() const;
+};
+
+/// Volume that flows through a window, by the midpoint rule over pieces of at most the fluid's h;
+/// what solids cover lets nothing through, and a face that they cover in part the open part.
 template <int dim>
 class Flow : public Observer<dim> {
  public:
@@ -20,11 +32,16 @@ class Flow : public Observer<dim> {
   std::vector<std::vector<double>> observe(const RunView<dim>& run) override;
 
  private:
-  /// Throws InputError if there is none.
-  Box<dim> part_in(const FluidDiscretization<dim>& fluid) const;
+  /// Takes a window along two corners of a box that is flat along one axis.
+  void read_box(const ParameterList& list);
+  /// The window in the fluid. Throws InputError if it is not there.
+  Window<dim> part_in(const FluidDiscretization<dim>& fluid) const;
+  Window<dim> part_of_box(const Box<dim>& bounds) const;
+  void check_inside(const Box<dim>& bounds) const;
 
-  int axis_ = 0;
-  Box<dim> window_;  ///< without extent along the axis [m]
+  std::string path_;  ///< for messages
+  Window<dim> window_;
+  int axis_ = -1;  ///< axis of the flow through a box; -1: the window is given by points
 };
 
 }  // namespace lockstep

@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "interfaces/liquid.hpp"
+#include "observers/carried_points.hpp"
 
 namespace lockstep {
 
@@ -38,8 +39,8 @@ Gauge<dim>::Gauge(const ParameterList& list) {
     foot_[a] = ends[a];
     head_[a] = ends[dim + a];
   }
-  check_input(foot_ != head_,
-              "In \"Observers\", the two \"Points\" of a gauge are one; it needs a line.");
+  check_input(foot_ != head_, "In \"{}\", the two \"Points\" of a gauge are one; it needs a line.",
+              observer_path(list));
 }
 
 template <int dim>

@@ -1,5 +1,7 @@
 #include "observers/probes.hpp"
 
+#include <limits>
+
 #include "base/errors.hpp"
 
 namespace lockstep {
@@ -59,8 +61,8 @@ template <int dim>
 std::vector<Point<dim>> listed_points(const ParameterList& list) {
   const auto& numbers = list.get<ParameterArray<double>>("Points");
   check_input(!numbers.empty() && numbers.size() % dim == 0,
-              "In \"Observers\", \"Points\" has {} numbers; it takes {} a point.", numbers.size(),
-              dim);
+              "In \"{}\", \"Points\" has {} numbers; it takes {} a point.", observer_path(list),
+              numbers.size(), dim);
   std::vector<Point<dim>> points(numbers.size() / dim);
   for (std::size_t p = 0; p < points.size(); ++p)
     for (int a = 0; a < dim; ++a)
@@ -90,10 +92,25 @@ std::vector<Point<dim>> box_points(const ParameterList& list) {
     counts[a] = count[a];
     total *= count[a];
   }
-  check_input(total <= most_points,
-              "In \"Observers\", \"Count\" asks for {:g} points, more than {:g}.", total,
-              most_points);
+  check_input(total <= most_points, "In \"{}\", \"Count\" asks for {:g} points, more than {:g}.",
+              observer_path(list), total, most_points);
   return lattice_points<dim>({point<dim>(list, "Lower"), point<dim>(list, "Upper")}, counts);
+}
+
+void declare_carrier(ParameterList& list) {
+  declare_optional<std::string>(
+      list, "Solid",
+      "The solid that the points move with from where they are at the start, as a gauge on a hull: "
+      "with all of one that is rigid, else with the nearest piece of its surface. Left out: they "
+      "stay.");
+}
+
+template <int dim>
+Probes<dim>::Probes(std::string name, std::vector<Point<dim>> points, const ParameterList& list)
+    : name_(std::move(name)), points_(std::move(points)) {
+  if (list.isParameter("Solid"))
+    carried_.emplace(observer_path(list), list.get<std::string>("Solid"), points_,
+                     std::numeric_limits<double>::infinity());
 }
 
 template <int dim>
@@ -110,6 +127,11 @@ std::vector<ObservedColumn> Probes<dim>::columns() const {
 
 template <int dim>
 std::vector<std::vector<double>> Probes<dim>::observe(const RunView<dim>& run) {
+  if (carried_) {
+    points_.clear();
+    for (const CarriedPoint<dim>& point : carried_->look(run))
+      points_.push_back(point.position);
+  }
   const std::vector<FluidSample<dim>> samples = output_of(run.fluid, name_).sample(points_);
   std::vector<std::vector<double>> rows;
   for (std::size_t p = 0; p < points_.size(); ++p) {
@@ -123,6 +145,18 @@ std::vector<std::vector<double>> Probes<dim>::observe(const RunView<dim>& run) {
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+template <int dim>
+void Probes<dim>::save(CheckpointWriter& writer) const {
+  if (carried_)
+    carried_->save(writer);
+}
+
+template <int dim>
+void Probes<dim>::load(const CheckpointReader& reader) {
+  if (carried_)
+    carried_->load(reader);
 }
 
 template const FluidOutput<2>& output_of(const FluidDiscretization<2>&, const std::string&);

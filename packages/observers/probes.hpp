@@ -1,9 +1,10 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "interfaces/fluid_sides.hpp"
-#include "interfaces/observer.hpp"
+#include "observers/carried_points.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
@@ -28,19 +29,27 @@ ParameterList box_parameters();
 template <int dim>
 std::vector<Point<dim>> box_points(const ParameterList& list);
 
-/// Pressure and velocity at fixed points, a row a point.
+/// Declares the "Solid" that points may move with.
+void declare_carrier(ParameterList& list);
+
+/// Pressure and velocity at points that stay or move with a solid, a row a point.
 template <int dim>
 class Probes : public Observer<dim> {
  public:
   Probes(std::string name, std::vector<Point<dim>> points)
       : name_(std::move(name)), points_(std::move(points)) {}
+  /// Points that move with the "Solid" of the list, if it has one.
+  Probes(std::string name, std::vector<Point<dim>> points, const ParameterList& list);
   std::string name() const override { return name_; }
   std::vector<ObservedColumn> columns() const override;
   std::vector<std::vector<double>> observe(const RunView<dim>& run) override;
+  void save(CheckpointWriter& writer) const override;
+  void load(const CheckpointReader& reader) override;
 
  private:
   std::string name_;
   std::vector<Point<dim>> points_;
+  std::optional<CarriedPoints<dim>> carried_;  ///< points of a solid; none: they stay
 };
 
 }  // namespace lockstep

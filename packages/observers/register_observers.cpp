@@ -3,21 +3,38 @@
 #include "observers/energy.hpp"
 #include "observers/flow.hpp"
 #include "observers/gauge.hpp"
+#include "observers/nodes.hpp"
 #include "observers/probes.hpp"
 
 namespace lockstep {
 
+namespace {
+/// A schema of points, with the solid that they may move with.
+template <ParameterList (*points)()>
+ParameterList carried() {
+  ParameterList list = points();
+  declare_carrier(list);
+  return list;
+}
+}  // namespace
+
 template <int dim>
 void register_observers(ObserverRegistry<dim>& observers) {
-  observers.add("points", "Pressure and velocity at points that you list.", points_parameters<dim>,
-                [](const ParameterList& list) {
-                  return std::make_unique<Probes<dim>>("points", listed_points<dim>(list));
+  observers.add("points",
+                "Pressure and velocity at points that you list, which may move with a solid.",
+                carried<points_parameters<dim>>, [](const ParameterList& list) {
+                  return std::make_unique<Probes<dim>>("points", listed_points<dim>(list), list);
                 });
-  observers.add("box", "Pressure and velocity at evenly spaced points of a line, a plane or a box.",
-                box_parameters<dim>, [](const ParameterList& list) {
-                  return std::make_unique<Probes<dim>>("box", box_points<dim>(list));
+  observers.add("box",
+                "Pressure and velocity at evenly spaced points of a line, a plane or a box, which "
+                "may move with a solid.",
+                carried<box_parameters<dim>>, [](const ParameterList& list) {
+                  return std::make_unique<Probes<dim>>("box", box_points<dim>(list), list);
                 });
-  observers.add("flow", "Volume that flows through a window along an axis, and its mean pressure.",
+  observers.add("nodes", "Place, displacement and velocity of points of a solid.",
+                nodes_parameters<dim>,
+                [](const ParameterList& list) { return std::make_unique<Nodes<dim>>(list); });
+  observers.add("flow", "Volume that flows through a window, and its mean pressure.",
                 flow_parameters<dim>,
                 [](const ParameterList& list) { return std::make_unique<Flow<dim>>(list); });
   observers.add("gauge", "Wet length of a line, as a wire gauge measures it.",

@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-/// Registers the observers "points", "box", "flow" and "gauge".
+/// Registers the observers "points", "box", "nodes", "flow", "gauge" and "energy".
 template <int dim>
 void register_observers(ObserverRegistry<dim>& observers);
 

@@ -5,6 +5,9 @@
 
 namespace lockstep {
 
+/// "Coupling/Type" that leaves the choice to the program.
+inline constexpr const char* automatic_coupling_type = "automatic";
+
 /// Name of a coupling, and why a scene has it: half a sentence.
 struct CouplingChoice {
   std::string type;

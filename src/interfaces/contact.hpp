@@ -21,6 +21,16 @@ struct HeldRow {
   double impulse = 0;     ///< found by the contact model [kg m/s]
   double response = 0;    ///< velocity per impulse in the model's response [1/kg]
   bool is_limit = false;  ///< true for a limit of a joint
+  std::vector<std::pair<GlobalIndex, double>> on_given{};  ///< weights of given dofs
+};
+
+/// Impulse of contact on a prescribed solid, of which no solve knows.
+template <int dim>
+struct PrescribedPush {
+  static constexpr int whole = -1;
+  int row = whole;  ///< held row of whose unit of impulse this is; `whole`: the impulse itself
+  int solid = -1;   ///< among all solids
+  Momentum<dim> impulse;
 };
 
 /// Result of one resolution of contacts.
@@ -42,6 +52,9 @@ struct ContactReport {
   /// `ContactResponse`.
   std::vector<HeldRow> held;
   std::vector<std::pair<GlobalIndex, double>> sliding;
+  std::vector<std::pair<GlobalIndex, double>> sliding_on_given;  ///< its part on given dofs
+  RCP<const Vector> impulse_on_given;  ///< generalized, on given dofs alone; null: none are given
+  std::vector<PrescribedPush<dim>> on_prescribed;
   /// Impulses of joint limits, each with the dof of its coordinate; the same on all ranks.
   std::vector<std::pair<GlobalIndex, double>> limit_impulses;
 };

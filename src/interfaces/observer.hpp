@@ -16,6 +16,7 @@ struct RunView {
   const std::vector<SolidState<dim>>& solids;  ///< in the order of bodies.csv
   const EnergyBudget* energy =
       nullptr;  ///< budget of the step; null: there was none, or no observer wants it
+  std::vector<const SolidModel<dim>*> models = {};  ///< models of the solids, one after the other
 };
 
 /// A column of an observer's table.

@@ -39,8 +39,12 @@ void create_output_directory(const Communicator& comm, const std::string& direct
 void record_input(const Communicator& comm, const std::string& directory,
                   const std::string& input_path, const std::string& used_parameters) {
   on_root(comm, [&] {
-    write_file_atomically(directory + "/input.xml",
+    const std::string extension = fs::path(input_path).extension().string();
+    const bool is_yaml = extension == ".yaml" || extension == ".yml";
+    write_file_atomically(directory + (is_yaml ? "/input.yaml" : "/input.xml"),
                           input_path.empty() ? used_parameters : read_whole_file(input_path));
+    std::error_code error;  // no earlier run may have written it
+    fs::remove(directory + (is_yaml ? "/input.xml" : "/input.yaml"), error);
     write_file_atomically(directory + "/used-parameters.xml", used_parameters);
   });
 }

@@ -13,8 +13,9 @@ namespace lockstep {
 /// cannot be created or written to, or if its "frames" is a link or a file.
 void create_output_directory(const Communicator& comm, const std::string& directory);
 
-/// DIRECTORY/input.xml, a byte copy of the scene file, and used-parameters.xml, the complete list
-/// with all defaults; both are that if there is no scene file (an empty path). Throws OutputError.
+/// DIRECTORY/input.xml, a byte copy of the scene file (input.yaml of one in YAML), and
+/// used-parameters.xml, the complete list with all defaults; both are that if there is no scene
+/// file (an empty path). Throws OutputError.
 void record_input(const Communicator& comm, const std::string& directory,
                   const std::string& input_path, const std::string& used_parameters);
 

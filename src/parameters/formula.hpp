@@ -21,6 +21,10 @@ struct Formula {
 bool operator==(const Formula& a, const Formula& b);
 std::ostream& operator<<(std::ostream& out, const Formula& formula);
 
+/// Treatment of a number that is written as a formula in brackets: refused as a mistake, or kept
+/// for `evaluate_formulas`.
+enum class FormulaPolicy { refused, kept };
+
 /// True if a value of this type written like this is a formula. Brackets in strings are text.
 bool is_formula(ValueType type, const std::string& text);
 

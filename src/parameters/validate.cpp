@@ -9,6 +9,7 @@
 #include "parameters/mistakes.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
+#include "parameters/untyped.hpp"
 
 namespace lockstep {
 
@@ -246,6 +247,7 @@ const ParameterList& chosen_schema(const ListRule& rule, const ParameterList& gi
 
 void validate(ParameterList& given, const ParameterList& valid, const Source& source,
               const std::string& path) {
+  assign_types(given, valid, source, FormulaPolicy::refused, path);
   Validator validator(source);
   validator.check_list(given, valid, path);
   validator.mistakes().throw_all();

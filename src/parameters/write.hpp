@@ -6,8 +6,8 @@
 
 namespace lockstep {
 
-/// The list as XML that `read_xml` reads back to the same values, doubles bit for bit; docstrings
-/// included. Throws OutputError for a value that XML cannot hold.
+/// The list as XML that `read_parameters` reads back to the same values, doubles bit for bit;
+/// docstrings included. Throws OutputError for a value that XML cannot hold.
 std::string to_xml(const ParameterList& list);
 
 /// One line for every parameter of a validated list that was chosen by the user:

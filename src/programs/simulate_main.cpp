@@ -14,6 +14,8 @@
 #include "parameters/command_line.hpp"
 #include "parameters/parameter_rule.hpp"
 #include "parameters/reference.hpp"
+#include "parameters/schema/json_schema.hpp"
+#include "parameters/schema/relax_ng.hpp"
 #include "parameters/write.hpp"
 #include "programs/load_plug_ins.hpp"
 #include "programs/open_scene.hpp"
@@ -30,7 +32,7 @@ struct Arguments {
   std::vector<std::string> libraries;    // libraries of plug-ins
   std::vector<std::string> dump_system;  // solve and file
   bool validate = false, explain = false, parameters = false, list_plugins = false;
-  std::string format = "text";
+  std::string format = "text", schema;
   int dimension = 3;  // dimension of --parameters
   bool quiet = false;
 };
@@ -75,6 +77,24 @@ void print_reference(const Arguments& arguments, const PlugIns& plug_ins) {
   std::cout << (arguments.format == "json" ? reference_json(valid) : reference_text(valid));
 }
 
+/// Scenes as they are written, with any of the fluids.
+template <int dim>
+ParameterList schema_of_scenes(const Registries<dim>& registries) {
+  ParameterList scene = scene_parameters<dim>(registries);
+  if (registries.domains.size() > 1) {  // the fluid's own is not known
+    const std::string documentation = scene.getEntry("Domain").docString();
+    scene.remove("Domain");
+    declare_free_sublist(scene, "Domain", documentation);
+  }
+  return written_scene(scene, dim);
+}
+
+void print_schema(const std::string& kind, const PlugIns& plug_ins) {
+  const ParameterList plane = schema_of_scenes(plug_ins.plane);
+  const ParameterList space = schema_of_scenes(plug_ins.space);
+  std::cout << (kind == "json" ? json_schema(plane, space) : relax_ng(plane, space));
+}
+
 void print_plug_in(const std::string& kind, const std::string& name,
                    const std::string& documentation) {
   std::cout << kind << ": " << name << "\n    " << documentation << "\n";
@@ -115,9 +135,18 @@ void print_plug_ins(const PlugIns& plug_ins) {
                            fmt::join(kinds, ", "));
 }
 
+void print_what_is_known(const Arguments& arguments, const PlugIns& plug_ins) {
+  if (arguments.parameters)
+    print_reference(arguments, plug_ins);
+  else if (arguments.list_plugins)
+    print_plug_ins(plug_ins);
+  else
+    print_schema(arguments.schema, plug_ins);
+}
+
 /// The command line. Returns false if it has asked for help or the version, which is told then.
 bool read_arguments(int argc, char** argv, const Communicator& comm, Arguments& arguments) {
-  CLI::App app("Runs a scene: fluid coupled to solids, from an XML file.");
+  CLI::App app("Runs a scene: fluid coupled to solids, from an XML or YAML file.");
   app.set_version_flag("--version", "lockstep " + build_information().version + " (" +
                                         build_information().git_hash + ")");
   app.add_option("scene", arguments.run.scene_file, "scene file (xml-params/scenes)");
@@ -149,6 +178,9 @@ bool read_arguments(int argc, char** argv, const Communicator& comm, Arguments& 
   app.add_option("--dimension", arguments.dimension, "of --parameters: 2 or 3")
       ->check(CLI::IsMember({2, 3}));
   app.add_flag("--list-plugins", arguments.list_plugins, "print all plug-ins");
+  app.add_option("--schema", arguments.schema,
+                 "print a schema for editors: xml (RELAX NG) or json (JSON Schema, for YAML)")
+      ->check(CLI::IsMember({"xml", "json"}));
   app.add_flag("--quiet", arguments.quiet, "print warnings and errors only");
   try {
     app.parse(argc, argv);
@@ -186,10 +218,10 @@ int run(int argc, char** argv, const std::function<PlugIns()>& make_plug_ins,
   if (!read_arguments(argc, argv, comm, arguments))
     return 0;
   PlugIns plug_ins = make_plug_ins();
-  if (arguments.parameters || arguments.list_plugins) {
+  if (arguments.parameters || arguments.list_plugins || !arguments.schema.empty()) {
     load_plug_ins(arguments.libraries, plug_ins, comm);
     if (is_root(comm))
-      arguments.parameters ? print_reference(arguments, plug_ins) : print_plug_ins(plug_ins);
+      print_what_is_known(arguments, plug_ins);
     return 0;
   }
   check_input(!arguments.run.scene_file.empty(),

@@ -102,7 +102,13 @@ void expand_scene(Document& document, std::vector<std::string>& settings,
   evaluate_formulas(document.list, constants, document.source);
 }
 
-void declare_scene_language(ParameterList& scene, int dimension) {
+namespace {
+
+const char* const defaults_doc =
+    "Values for all solids that do not say otherwise; a list that bears the name of a type, "
+    "\"rigid body\", for those of that type, of which there may be none.";
+
+void declare_include_and_constants(ParameterList& scene) {
   declare_optional<std::string>(
       scene, "Include",
       "Another scene file, relative to this one, whose parameters hold where this file is silent; "
@@ -113,10 +119,52 @@ void declare_scene_language(ParameterList& scene, int dimension) {
       "brackets, "
       "value=\"[2*R]\" or \"{[R], 0}\", in the syntax of muParser; a constant of those before it. "
       "Some may also be formulas of the place x, y, z and the time t, whose names constants hide.");
-  declare_free_sublist(
-      scene, "Defaults",
-      "Values for all solids that do not say otherwise; a list that bears the name of a type, "
-      "\"rigid body\", for those of that type, of which there may be none.");
+}
+
+/// Solids with what `add` puts beside the parameters of each type.
+template <typename Add>
+std::vector<TypedSchema> with(std::vector<TypedSchema> solids, const Add& add) {
+  for (TypedSchema& solid : solids) {
+    solid.parameters.remove("Type", false);
+    add(solid.parameters);
+  }
+  return solids;
+}
+
+/// The list "Copies" of a solid, with overrides for single copies.
+void declare_written_copies(ParameterList& solid, int dimension,
+                            const std::vector<TypedSchema>& solids) {
+  declare_copies(solid, dimension);
+  const ParameterEntry entry = solid.getEntry("Copies");
+  std::vector<TypedSchema> types = with(list_rule(entry).schemas, [&](ParameterList& copies) {
+    declare_named_sublists(copies, "Overrides", "What is different in the copy of this number.",
+                           solids);
+  });
+  solid.remove("Copies");
+  declare_typed_sublist(solid, "Copies", entry.docString(), types);
+}
+
+}  // namespace
+
+ParameterList written_scene(ParameterList scene, int dimension) {
+  const ParameterEntry entry = scene.getEntry("Solids");
+  const std::vector<TypedSchema> solids = with(list_rule(entry).schemas, [](ParameterList&) {});
+  const std::vector<TypedSchema> copied =
+      with(solids, [&](ParameterList& solid) { declare_written_copies(solid, dimension, solids); });
+  const std::vector<TypedSchema> defaults = with(copied, [&](ParameterList& general) {
+    for (const TypedSchema& solid : copied)
+      declare_list(general, solid.type, solid.documentation) = solid.parameters;
+  });
+  scene.remove("Solids");
+  declare_named_sublists(scene, "Solids", entry.docString(), copied);
+  declare_include_and_constants(scene);
+  declare_typed_sublist(scene, "Defaults", defaults_doc, defaults);
+  return scene;
+}
+
+void declare_scene_language(ParameterList& scene, int dimension) {
+  declare_include_and_constants(scene);
+  declare_free_sublist(scene, "Defaults", defaults_doc);
   declare_copies(
       declare_list(scene, "(any solid)", "Parameters that every solid may have beside its own."),
       dimension);

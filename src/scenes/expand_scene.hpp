@@ -21,4 +21,9 @@ int scene_dimension(const Document& document);
 /// Adds to the schema of a scene, for the reference only, what `expand_scene` takes away.
 void declare_scene_language(ParameterList& scene, int dimension);
 
+/// Returns the schema of a scene as it is written from that of one of plain parameters: with
+/// "Include" and "Constants", with "Defaults" for solids of each type and "Copies" in every solid,
+/// which may override what the solid says.
+ParameterList written_scene(ParameterList scene, int dimension);
+
 }  // namespace lockstep

@@ -5,9 +5,10 @@
 
 #include "base/errors.hpp"
 #include "parameters/command_line.hpp"
+#include "parameters/files/parameter_file.hpp"
 #include "parameters/mistakes.hpp"
 #include "parameters/parameter_rule.hpp"
-#include "parameters/strict_xml.hpp"
+#include "parameters/untyped.hpp"
 
 namespace lockstep {
 namespace {
@@ -15,17 +16,17 @@ namespace {
 /// The paths that a parameter of the top level names.
 std::vector<std::string> named_paths(const Document& document, const std::string& name,
                                      const std::string& what) {
-  const ParameterEntry* entry = document.list.getEntryPtr(name);
-  if (!entry)
+  if (!document.list.isParameter(name))
     return {};
-  if (entry->isType<std::string>())
-    return {document.list.get<std::string>(name)};
-  check_readable(*entry);
-  check_input(entry->isType<ParameterArray<std::string>>(),
+  const ParameterEntry entry = inferred(document.list.getEntry(name));
+  if (entry.isType<std::string>())
+    return {Teuchos::getValue<std::string>(entry)};
+  check_readable(entry);
+  check_input(entry.isType<ParameterArray<std::string>>(),
               "{}: \"{}\" must be a string or an Array(string): the paths of {}.",
               document.source.place(name), name, what);
   std::vector<std::string> paths;
-  for (const std::string& path : document.list.get<ParameterArray<std::string>>(name))
+  for (const std::string& path : Teuchos::getValue<ParameterArray<std::string>>(entry))
     paths.push_back(path);
   return paths;
 }
@@ -60,8 +61,8 @@ void move_files(ParameterList& list, const std::string& included) {
   for (const auto& [name, entry] : entries(list)) {
     if (entry.isList()) {
       move_files(list.sublist(name), included);
-    } else if (name == "File" && entry.isType<std::string>()) {
-      const std::string file = Teuchos::getValue<std::string>(entry);
+    } else if (name == "File" && inferred(entry).isType<std::string>()) {
+      const std::string file = Teuchos::getValue<std::string>(inferred(entry));
       if (!file.empty())
         list.set(name, resolve_path(included, file));
     }
@@ -72,7 +73,7 @@ void move_files(ParameterList& list, const std::string& included) {
 Document read_included(const std::string& file, const std::string& place,
                        const Communicator& comm) {
   try {
-    return read_xml(file, comm, FormulaPolicy::kept);
+    return read_parameters(file, comm, FormulaPolicy::kept);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: what it includes: {}", place, error.what()));
   }

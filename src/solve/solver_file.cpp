@@ -3,15 +3,18 @@
 #include <map>
 
 #include "base/errors.hpp"
-#include "parameters/strict_xml.hpp"
+#include "parameters/files/parameter_file.hpp"
+#include "parameters/untyped.hpp"
 
 namespace lockstep {
 
 Document read_solver_file(const std::string& path, const Communicator& comm) {
-  Document document = read_xml(path, comm);
+  Document document = read_parameters(path, comm);
   ParameterList& list = document.list;
   if (!list.isParameter("Type") && list.isParameter("Linear Solver Type"))
     list.set("Type", std::string("stratimikos"));
+  assign_type(list, "Type", ValueType::text, document.source, "");
+  assign_type(list, "Tolerance", ValueType::real, document.source, "");
   return document;
 }
 

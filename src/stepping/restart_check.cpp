@@ -7,9 +7,9 @@
 #include "base/regular_file.hpp"
 #include "base/shortened.hpp"
 #include "output/checksum.hpp"
+#include "parameters/files/strict_xml.hpp"
 #include "parameters/source.hpp"
 #include "parameters/strict_values.hpp"
-#include "parameters/strict_xml.hpp"
 
 namespace lockstep {
 

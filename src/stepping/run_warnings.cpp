@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "interfaces/liquid.hpp"
+#include "interfaces/periodic_fluid.hpp"
 
 namespace lockstep {
 
@@ -38,6 +39,37 @@ void RunWarnings<dim>::warn_of_volume(long long step, const LiquidReport& liquid
 }
 
 template <int dim>
+void RunWarnings<dim>::warn_of_periodic_sides(long long step, const Components<dim>& components,
+                                              const Log& log) {
+  constexpr double round_off = 1e-6;  // part of the domain; a pile from side to side ends at both
+  const FluidDiscretization<dim>& fluid = *components.fluid;
+  const auto* side = side_of<PeriodicFluid<dim>>(fluid);
+  if (of_periodic_sides_ || !side || !fluid.is_periodic())
+    return;
+  const std::array<bool, dim> periodic = side->periodic_axes();
+  const Box<dim> domain = fluid.bounds();
+  const SolidSystem<dim>& all = *components.solids;
+  for (int m = 0; m < all.n_models(); ++m)
+    for (const SolidDescription& solid : all.model(m).solids()) {
+      Box<dim> box;
+      for (int v = solid.vertex_begin; v < solid.vertex_end && !solid.prescribed; ++v)
+        box.extend(all.model(m).surface().vertices[v]);
+      for (int a = 0; a < dim && !box.isEmpty() && !of_periodic_sides_; ++a) {
+        const double beyond =
+            std::max(box.max()[a] - domain.max()[a], domain.min()[a] - box.min()[a]);
+        if (!periodic[a] || beyond <= round_off * domain.sizes()[a])
+          continue;
+        of_periodic_sides_ = true;
+        log.warning(
+            "Step {}: \"{}\" goes through a periodic side along {}. Fluid comes in again at the "
+            "other side, a solid does not: what of it is beyond the side meets neither fluid nor "
+            "solids. Later ones are not reported.",
+            step, solid.name, axis_names[a]);
+      }
+    }
+}
+
+template <int dim>
 void RunWarnings<dim>::before_step(long long step, const StepBound& bound, const StepBound& wanted,
                                    const Log& log) {
   constexpr int many = 20;
@@ -60,6 +92,7 @@ void RunWarnings<dim>::after_step(long long step, const StepReport<dim>& report,
     warn_of_watches(step, report.liquid->watches, *components.fluid->liquid(), log);
     warn_of_volume(step, *report.liquid, log);
   }
+  warn_of_periodic_sides(step, components, log);
   if (report.contact_position.n_crossings > 0) {
     log.warning(
         "Step {}: prescribed solids or pinned nodes press surfaces through each other at {} "

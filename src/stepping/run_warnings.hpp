@@ -20,11 +20,13 @@ class RunWarnings {
  private:
   void warn_of_watches(long long step, const std::vector<WatchedLiquid>& watches,
                        const LiquidFluid<dim>& liquid, const Log& log);
+  /// Warns once when a free solid leaves the domain through a periodic side.
+  void warn_of_periodic_sides(long long step, const Components<dim>& components, const Log& log);
   void warn_of_volume(long long step, const LiquidReport& liquid, const Log& log);
 
   int n_short_ = 0;  ///< steps one after the other that are far shorter than wanted
   bool of_viscous_step_ = false, of_stretch_ = false, of_unsettled_ = false, of_contact_ = false,
-       of_volume_ = false, of_short_steps_ = false;
+       of_volume_ = false, of_short_steps_ = false, of_periodic_sides_ = false;
   std::vector<char> of_watch_;
 };
 

@@ -1,18 +1,11 @@
 #include "stepping/scene.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "base/errors.hpp"
-#include "base/xml_text.hpp"
 #include "coupling/automatic_coupling.hpp"
-#include "output/xdmf.hpp"
-#include "parameters/mistakes.hpp"
 #include "parameters/parameter_rule.hpp"
-#include "parameters/shape_sizes.hpp"
 #include "stepping/view.hpp"
 
 namespace lockstep {
@@ -119,166 +112,20 @@ void declare_joints(ParameterList& scene, const Registries<dim>& registries) {
                         registries.articulations.schemas(), registries.joints.begin()->first);
 }
 
-/// Mesh files are given relative to the scene.
-void resolve_files(ParameterList& list, const std::string& scene_file) {
-  for (auto entry = list.begin(); entry != list.end(); ++entry) {
-    const std::string name = list.name(entry);
-    if (list.isSublist(name)) {
-      resolve_files(list.sublist(name), scene_file);
-    } else if (name == "File" && !list.get<std::string>(name).empty()) {
-      list.set(name, resolve_path(scene_file, list.get<std::string>(name)));
-    }
-  }
-}
-
-/// Frames and checkpoints keep solids under their names, as far as HDF5 and ParaView can.
-void check_solid_names(const ParameterList& solids) {
-  std::map<std::string, std::string> stored;
-  for (const auto& entry : solids) {
-    const std::string& name = entry.first;
-    check_input(std::none_of(name.begin(), name.end(),
-                             [](unsigned char c) { return std::iscntrl(c) != 0; }),
-                "In \"Solids\", the name \"{}\" holds a line break or another control character; "
-                "write it in one line.",
-                xml_escaped(name));
-    check_input(name.find_first_not_of('.') != std::string::npos,
-                "In \"Solids\", \"{}\" cannot be stored as a name; use letters or digits.", name);
-    for (const std::string& kept : {name, name + " elements"}) {
-      const auto [other, is_new] = stored.emplace(xdmf::stored_name(kept), name);
-      check_input(
-          is_new,
-          "In \"Solids\", \"{}\" and \"{}\" would be stored under one name, \"{}\"; give one "
-          "of them another.",
-          other->second, name, other->first);
-    }
-  }
-}
-
-/// Refuses bodies far longer than the domain by their vertices, which alone tell how long a mesh
-/// from a file is.
-template <int dim>
-void check_body_lengths(const SolidSystem<dim>& solids, double domain_length) {
-  constexpr double most_domains = 1000;
-  const SurfaceMesh<dim> surface = solids.surface();
-  for (const SolidDescription& solid : solids.solids()) {
-    Box<dim> box;
-    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
-      box.extend(surface.vertices[v]);
-    check_input(box.isEmpty() || box.sizes().maxCoeff() <= most_domains * domain_length,
-                "The solid \"{}\" is {:g} m long, in a domain of {:g} m; lengths are in metres: "
-                "scale its mesh (\"Scale\").",
-                solid.name, box.isEmpty() ? 0. : box.sizes().maxCoeff(), domain_length);
-  }
-}
-
-std::vector<std::pair<std::string, std::string>> jointed_pairs(const ParameterList& scene) {
-  std::vector<std::pair<std::string, std::string>> pairs;
-  if (!scene.isSublist("Joints"))
-    return pairs;
-  for (const auto& [name, entry] : entries(scene.sublist("Joints"))) {
-    const auto& solids =
-        scene.sublist("Joints").sublist(name).get<ParameterArray<std::string>>("Solids");
-    pairs.emplace_back(solids[0], solids[1]);
-  }
-  return pairs;
-}
-
-template <int dim>
-std::unique_ptr<SolidSystem<dim>> jointed_solids(
-    const Registries<dim>& registries, const ParameterList& scene,
-    std::vector<std::unique_ptr<SolidModel<dim>>> models, const SolidSetting<dim>& setting) {
-  NamedLists joints;
-  for (const auto& [name, entry] : entries(scene.sublist("Joints")))
-    joints.emplace_back(name, scene.sublist("Joints").sublist(name));
-  const ParameterList& shared = scene.sublist("Articulation");
-  const double start = setting.start_time;
-  const double turn = scene.sublist("Time").get<double>("Largest Turn");
-  const auto system = registries.articulations.create(
-      shared.get<std::string>("Type"), shared, joints,
-      JointSetting<dim>{models, start, turn, setting.comm, setting.fluid_density});
-  models.push_back(std::move(system->rates));
-  auto solids = std::make_unique<SolidSystem<dim>>(std::move(models), setting.comm,
-                                                   std::move(system->constraints));
-  solids->begin_step(start, 0);
-  // Leaves of the velocities what the joints admit, as after an impact.
-  const RCP<const Vector> momentum = solids->explicit_momentum(start, 0);
-  solids->set_velocity(*solids->velocity_of(*momentum, 0, solids->constraints(start, start)));
-  return solids;
-}
-
-template <int dim>
-std::unique_ptr<SolidSystem<dim>> build_solids(const Registries<dim>& registries,
-                                               const ParameterList& scene,
-                                               const std::string& scene_file,
-                                               const SolidSetting<dim>& setting,
-                                               double domain_length) {
-  const ParameterList& solids = scene.sublist("Solids");
-  check_solid_names(solids);
-  Mistakes mistakes;
-  for (const auto& entry : solids) {
-    const std::string& name = entry.first;
-    const ParameterList& solid = solids.sublist(name);
-    if (solid.isSublist("Geometry"))
-      mistakes.collect([&] {
-        check_body_size(solid.sublist("Geometry"), setting.smallest_length, domain_length, dim,
-                        name);
-      });
-  }
-  mistakes.throw_all();
-  std::vector<std::unique_ptr<SolidModel<dim>>> models;
-  for (const auto& plugin : registries.solids) {
-    NamedLists lists;
-    for (auto entry = solids.begin(); entry != solids.end(); ++entry) {
-      const std::string name = solids.name(entry);
-      if (!solids.isSublist(name) || solids.sublist(name).get<std::string>("Type") != plugin.name) {
-        continue;
-      }
-      lists.emplace_back(name, solids.sublist(name));
-      resolve_files(lists.back().second, scene_file);
-    }
-    if (!lists.empty()) {
-      models.push_back(registries.solids.create(plugin.name, ParameterList(), lists, setting));
-    }
-  }
-  if (!scene.isSublist("Joints") || scene.sublist("Joints").numParams() == 0)
-    return std::make_unique<SolidSystem<dim>>(std::move(models), setting.comm);
-  return jointed_solids(registries, scene, std::move(models), setting);
-}
-
-constexpr const char* automatic = "automatic";
-
 template <int dim>
 void declare_coupling(ParameterList& scene, const Registries<dim>& registries) {
   ParameterList list;
   declare(list, "Correct Buoyancy", true, "As for the coupling that is chosen.");
   auto couplings = registries.couplings.schemas();
   couplings.push_back(
-      {automatic,
+      {automatic_coupling_type,
        "'flux' if every closed solid is rigid, at least two cells thick and not far lighter than "
        "the fluid, else 'mixed face'; "
        "--explain says which and why.",
        list});
   declare_typed_sublist(scene, "Coupling",
                         "Coupling of fluid and solids: their exchange of momentum.", couplings,
-                        automatic);
-}
-
-/// Makes the coupling of a scene. `note` becomes the reason of an automatic choice.
-template <int dim>
-std::unique_ptr<Coupling<dim>> build_coupling(const Registries<dim>& registries,
-                                              const ParameterList& list,
-                                              const SolidSystem<dim>& solids,
-                                              const FluidDiscretization<dim>& fluid,
-                                              std::string& note) {
-  const auto type = list.get<std::string>("Type");
-  if (type != automatic)
-    return registries.couplings.create(type, list);
-  const CouplingChoice choice = automatic_coupling(*solids.snapshot(), fluid.smallest_length(),
-                                                   fluid.density(fluid.bounds().center()));
-  note = choice.reason;
-  ParameterList chosen = registries.couplings.valid_parameters(choice.type);
-  chosen.set("Correct Buoyancy", list.get<bool>("Correct Buoyancy"));
-  return registries.couplings.create(choice.type, chosen);
+                        automatic_coupling_type);
 }
 
 }  // namespace
@@ -368,57 +215,7 @@ SceneOptions scene_options(const ParameterList& scene) {
   return options;
 }
 
-template <int dim>
-Components<dim> build_components(const Registries<dim>& registries, const ParameterList& scene,
-                                 const std::string& scene_file, const Communicator& comm) {
-  const auto type_of = [&scene](const char* list) {
-    return scene.sublist(list).get<std::string>("Type");
-  };
-  Components<dim> components;
-  ParameterList fluid_list = scene.sublist("Fluid");
-  resolve_files(fluid_list, scene_file);
-  components.fluid =
-      registries.fluids.create(type_of("Fluid"), fluid_list, scene.sublist("Domain"), comm);
-  const FluidDiscretization<dim>& fluid = *components.fluid;
-  const Box<dim> bounds = fluid.bounds();
-  const SolidSetting<dim> solid_setting{fluid.smallest_length(), fluid.gravity(),
-                                        scene.sublist("Time").get<double>("Start"), comm,
-                                        fluid.density(bounds.center())};
-  components.solids =
-      build_solids<dim>(registries, scene, scene_file, solid_setting, bounds.sizes().maxCoeff());
-  check_body_lengths(*components.solids, bounds.sizes().maxCoeff());
-  components.coupling = build_coupling(registries, scene.sublist("Coupling"), *components.solids,
-                                       fluid, components.coupling_note);
-  const ParameterList& strategy = scene.sublist("Solver").sublist("Strategy");
-  components.strategy = registries.strategies.create(strategy.get<std::string>("Type"), strategy);
-  const auto* joints = std::as_const(*components.solids).joints();
-  check_input(!joints || joints->limited().empty() || type_of("Contact") != "none",
-              "The joint \"{}\" has limits, which contact keeps; \"Contact/Type\" must not be "
-              "\"none\".",
-              joints ? joints->limited() : "");
-  if (type_of("Contact") != "none") {
-    ContactSetting<dim> setting;
-    setting.domain = bounds;
-    setting.smallest_length = fluid.smallest_length();
-    setting.comm = comm;
-    for (const SolidDescription& solid : components.solids->solids())
-      setting.solids.push_back(solid.name);
-    setting.jointed = jointed_pairs(scene);
-    setting.closed_sides = fluid.closed_sides();
-    setting.wall_velocity = [&fluid](int axis, int end, double time) {
-      return fluid.wall_velocity(axis, end, time);
-    };
-    components.contact =
-        registries.contacts.create(type_of("Contact"), scene.sublist("Contact"), setting);
-  }
-  return components;
-}
-
 template ParameterList scene_parameters<2>(const Registries<2>&, const std::string&);
 template ParameterList scene_parameters<3>(const Registries<3>&, const std::string&);
-template Components<2> build_components<2>(const Registries<2>&, const ParameterList&,
-                                           const std::string&, const Communicator&);
-template Components<3> build_components<3>(const Registries<3>&, const ParameterList&,
-                                           const std::string&, const Communicator&);
 
 }  // namespace lockstep

@@ -39,9 +39,4 @@ void check_time_resolution(const TimeOptions& time);
 
 SceneOptions scene_options(const ParameterList& scene);
 
-/// Builds the plug-ins of a validated scene. `scene_file` resolves relative mesh files. Collective.
-template <int dim>
-Components<dim> build_components(const Registries<dim>& registries, const ParameterList& scene,
-                                 const std::string& scene_file, const Communicator& comm);
-
 }  // namespace lockstep

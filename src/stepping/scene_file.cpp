@@ -4,17 +4,17 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <map>
 #include <new>
 
 #include "base/errors.hpp"
 #include "base/library_message.hpp"
+#include "base/wait_for_all.hpp"
 #include "parameters/command_line.hpp"
 #include "parameters/mistakes.hpp"
 #include "parameters/parameter_rule.hpp"
-#include "parameters/strict_xml.hpp"
+#include "parameters/untyped.hpp"
 #include "parameters/validate.hpp"
 #include "solve/solver_file.hpp"
 
@@ -95,6 +95,7 @@ void complete_scene(Document& document, const std::vector<std::string>& settings
     keep_mistakes(document.list.sublist("Solver"), "File", [&] {
       merge(document, "Solver/Strategy",
             read_solver_file(resolve_path(document.source.file, file), comm));
+      assign_types(document.list, valid, document.source, FormulaPolicy::refused);
     });
   Mistakes mistakes;
   check_strategy(document);
@@ -143,19 +144,7 @@ int run_and_report(const Communicator& comm, const std::function<int()>& body) {
   // more.
   if (is_root(comm))
     std::fprintf(stderr, "lockstep: %s\n", message.c_str());
-  if (comm->getSize() == 1)
-    return code;
-  MPI_Request request;
-  int all_here = 0, mine = 1, sum = 0;
-  MPI_Iallreduce(&mine, &sum, 1, MPI_INT, MPI_SUM, raw_communicator(comm), &request);
-  for (int wait = 0; wait < 50 && !all_here; ++wait) {
-    MPI_Test(&request, &all_here, MPI_STATUS_IGNORE);
-    if (!all_here) {
-      struct timespec pause = {0, 20000000};
-      nanosleep(&pause, nullptr);
-    }
-  }
-  if (!all_here) {
+  if (!wait_for_all(comm)) {
     if (!is_root(comm)) {
       std::fprintf(stderr, "lockstep: rank %d: %s\n", comm->getRank(), message.c_str());
     }

@@ -12,6 +12,7 @@
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
 #include "output/xdmf.hpp"
+#include "parameters/mistakes.hpp"
 #include "parameters/write.hpp"
 #include "stepping/surface_frames.hpp"
 
@@ -65,6 +66,22 @@ std::vector<LineState> line_states(const SolidSystem<dim>& solids) {
   return all;
 }
 
+/// Builds the plug-ins; throws InputError with their mistakes and those that the rest of the scene
+/// has without them.
+template <int dim>
+Components<dim> build_parts(const Registries<dim>& registries, const ParameterList& scene,
+                            const std::string& scene_file, const Communicator& comm) {
+  Mistakes mistakes;
+  Components<dim> components;
+  mistakes.collect([&] { scene_options(scene); });
+  mistakes.collect(
+      [&] { components = build_components<dim>(registries, scene, scene_file, comm); });
+  mistakes.collect(
+      [&] { ObserverTables<dim>::check(registries.observers, scene.sublist("Observers")); });
+  mistakes.throw_all();
+  return components;
+}
+
 /// Thrown between the stages of a long step after a signal, on all ranks.
 struct StepStopped {
   int signal;
@@ -77,10 +94,10 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
                             const RunOptions& options, const Communicator& comm, const Log& log)
     : scene_(scene),
       options_(options),
-      scene_options_(scene_options(scene)),
       comm_(comm),
       log_(log),
-      components_(build_components<dim>(registries, scene, options.scene_file, comm)),
+      components_(build_parts<dim>(registries, scene, options.scene_file, comm)),
+      scene_options_(scene_options(scene)),
       tables_(comm, options.output_directory, components_.fluid->liquid(),
               components_.solids->joints() != nullptr, !line_states(*components_.solids).empty()),
       observers_(registries.observers, scene.sublist("Observers"), comm, options.output_directory,
@@ -175,8 +192,11 @@ bool Simulation<dim>::reach_frame() {
 template <int dim>
 RunView<dim> Simulation<dim>::view(const std::vector<SolidState<dim>>& states) const {
   const bool has_energy = report_ && report_->energy;
-  return {scheme_->time(), last_dt_, *components_.fluid, states,
-          has_energy ? &*report_->energy : nullptr};
+  RunView<dim> run{scheme_->time(), last_dt_, *components_.fluid, states,
+                   has_energy ? &*report_->energy : nullptr};
+  for (int m = 0; m < components_.solids->n_models(); ++m)
+    run.models.push_back(&components_.solids->model(m));
+  return run;
 }
 
 template <int dim>

@@ -7,6 +7,7 @@
 #include "output/frames.hpp"
 #include "output/schedule.hpp"
 #include "solve/dumping_strategy.hpp"
+#include "stepping/build_components.hpp"
 #include "stepping/explanation.hpp"
 #include "stepping/report/observer_tables.hpp"
 #include "stepping/report/run_tables.hpp"
@@ -105,11 +106,11 @@ class Simulation {
   std::unique_ptr<FolderLock> folder_lock_;  // on rank 0, until the last is written
   ParameterList scene_;
   RunOptions options_;
-  SceneOptions scene_options_;
   Communicator comm_;
   const Log& log_;
   StageTimers timers_;
   Components<dim> components_;
+  SceneOptions scene_options_;
   std::unique_ptr<TimeScheme<dim>> scheme_;
   RunTables<dim> tables_;
   ObserverTables<dim> observers_;

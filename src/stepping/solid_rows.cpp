@@ -7,6 +7,7 @@
 
 #include "base/shortened.hpp"
 #include "interfaces/liquid.hpp"
+#include "interfaces/periodic_fluid.hpp"
 
 namespace lockstep {
 namespace {
@@ -80,6 +81,29 @@ std::vector<char> sunk_solids(const Components<dim>& components,
   return sunk;
 }
 
+/// A warning where solids may leave a periodic domain; empty: none can.
+template <int dim>
+std::string periodic_warning(const std::vector<SolidDescription>& solids,
+                             const FluidDiscretization<dim>& fluid) {
+  const auto is_free = [](const SolidDescription& solid) {
+    return !solid.prescribed && solid.simplex_end > solid.simplex_begin;
+  };
+  const auto first = std::find_if(solids.begin(), solids.end(), is_free);
+  const auto* side = side_of<PeriodicFluid<dim>>(fluid);
+  if (first == solids.end() || !side || !fluid.is_periodic())
+    return "";
+  const std::array<bool, dim> periodic = side->periodic_axes();
+  std::vector<char> axes;
+  for (int a = 0; a < dim; ++a)
+    if (periodic[a])
+      axes.push_back("xyz"[a]);
+  return fmt::format(
+      "{:<22} fluid alone is periodic along {}: what of \"{}\"{} goes through such a side meets "
+      "neither fluid nor solids beyond it\n",
+      "warning", fmt::join(axes, " and "), shortened(first->name),
+      std::count_if(first, solids.end(), is_free) > 1 ? " and other free solids" : "");
+}
+
 template <int dim>
 std::string row(const Components<dim>& components, const SolidDescription& solid,
                 const SolidState<dim>& state, const Box<dim>& box) {
@@ -132,7 +156,7 @@ std::string solid_warnings(const Components<dim>& components, const SurfaceSnaps
     if (!what.empty() && n++ < most_rows)
       text += fmt::format("{:<22} \"{}\" {}\n", "warning", shortened(solids[i].name), what);
   }
-  return text + and_more(n);
+  return text + and_more(n) + periodic_warning<dim>(solids, *components.fluid);
 }
 
 template std::string solid_rows(const Components<2>&, const SurfaceSnapshot<2>&);

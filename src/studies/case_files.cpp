@@ -6,8 +6,9 @@
 #include "base/errors.hpp"
 #include "base/regular_file.hpp"
 #include "output/checksum.hpp"
+#include "parameters/files/parameter_file.hpp"
 #include "parameters/strict_values.hpp"
-#include "parameters/strict_xml.hpp"
+#include "parameters/untyped.hpp"
 
 namespace lockstep {
 
@@ -18,12 +19,13 @@ namespace fs = std::filesystem;
 /// All texts in a list that might name a file.
 void collect_texts(const ParameterList& list, std::vector<std::string>& texts) {
   for (const auto& [name, entry] : entries(list)) {
+    const ParameterEntry value = inferred(entry);
     if (entry.isList()) {
       collect_texts(list.sublist(name), texts);
-    } else if (value_type(entry) == ValueType::text) {
-      texts.push_back(value_text(entry));
-    } else if (value_type(entry) == ValueType::texts) {
-      for (const std::string& text : Teuchos::getValue<ParameterArray<std::string>>(entry))
+    } else if (value_type(value) == ValueType::text) {
+      texts.push_back(value_text(value));
+    } else if (value_type(value) == ValueType::texts) {
+      for (const std::string& text : Teuchos::getValue<ParameterArray<std::string>>(value))
         texts.push_back(text);
     }
   }
@@ -33,7 +35,7 @@ void collect_texts(const ParameterList& list, std::vector<std::string>& texts) {
 std::vector<std::string> texts_in(const std::string& content, const std::string& file) {
   std::vector<std::string> texts;
   try {
-    collect_texts(read_xml_string(content, file, FormulaPolicy::kept).list, texts);
+    collect_texts(read_parameters_text(content, file, FormulaPolicy::kept).list, texts);
   } catch (const InputError&) {
     texts.clear();  // a mesh; or simulate will say what is wrong
   }

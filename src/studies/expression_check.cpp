@@ -5,8 +5,8 @@
 
 #include "base/errors.hpp"
 #include "base/regular_file.hpp"
+#include "parameters/files/parameter_file.hpp"
 #include "parameters/strict_values.hpp"
-#include "parameters/strict_xml.hpp"
 #include "stepping/report/run_columns.hpp"
 
 namespace lockstep {
@@ -44,7 +44,7 @@ Bodies bodies_of(const std::string& scene_file) {
   const std::string text = read_regular_file(scene_file, failure);
   check_input(failure.empty(), "Cannot read the scene '{}': {}.", scene_file, failure);
   try {
-    ParameterList scene = read_xml_string(text, scene_file, FormulaPolicy::kept).list;
+    ParameterList scene = read_parameters_text(text, scene_file, FormulaPolicy::kept).list;
     bodies.complete = !scene.isParameter("Include") && !scene.isParameter("Copies");
     for (const auto& [name, entry] : entries(scene.sublist("Solids")))
       bodies.names.insert(variable_name(name));

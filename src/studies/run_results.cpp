@@ -9,8 +9,8 @@
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
 #include "output/csv_line.hpp"
+#include "parameters/files/strict_xml.hpp"
 #include "parameters/parameter_rule.hpp"
-#include "parameters/strict_xml.hpp"
 
 namespace lockstep {
 

@@ -5,8 +5,8 @@
 
 #include "base/errors.hpp"
 #include "output/atomic_file.hpp"
+#include "parameters/files/parameter_file.hpp"
 #include "parameters/strict_values.hpp"
-#include "parameters/strict_xml.hpp"
 #include "parameters/validate.hpp"
 #include "studies/series_product.hpp"
 
@@ -330,7 +330,7 @@ ParameterList study_parameters() {
 }
 
 Study read_study(const std::string& file) {
-  Document document = read_xml_string(read_whole_file(file), file);
+  Document document = read_parameters_text(read_whole_file(file), file);
   validate(document, study_parameters());
   const ParameterList& list = document.list;
   const ParameterList& ladder = list.sublist("Ladder");

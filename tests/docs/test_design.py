@@ -84,9 +84,9 @@ class Design(unittest.TestCase):
         self.assertLessEqual(max(len(what) for _, what, _, _ in self.arrows), 40)
 
     def test_a_wrong_arrow_is_seen(self):
-        for wrong in (("drivers/simulate.cpp", "", "src/parameters/strict_xml.cpp", "expand_scene"),   # defined elsewhere
-                      ("src/output/frames.cpp", "", "src/parameters/strict_xml.cpp", "read_xml"),      # not mentioned, not reached
-                      ("drivers/simulate.cpp", "", "src/parameters/gone.cpp", "read_xml")):
+        for wrong in (("drivers/simulate.cpp", "", "src/parameters/files/strict_xml.cpp", "expand_scene"),   # defined elsewhere
+                      ("src/output/frames.cpp", "", "src/parameters/files/parameter_file.cpp", "read_parameters"),      # not mentioned, not reached
+                      ("drivers/simulate.cpp", "", "src/parameters/gone.cpp", "read_parameters")):
             self.assertTrue(list(broken([self.arrows[0], wrong], ROOT)), wrong)
 
     def test_rooms_and_floors(self):

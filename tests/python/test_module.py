@@ -200,6 +200,12 @@ class Module(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "PathLike"):
             lockstep.Run(3)
 
+    def test_a_scene_in_yaml(self):
+        (self.root / "scene.yaml").write_text("Dimension: 2\nDomain: {Cells: [8, 8]}\nTime: {Steps: 1}\nOutput: {Frames: false}\n")
+        with lockstep.Run(self.root / "scene.yaml", self.root / "run", {"Domain/Cells": (12, 12)}) as run:
+            self.assertTrue(run.step())
+            self.assertEqual(run.fields()["pressure"].shape, (12, 12))
+
     def test_targets_are_those_of_the_present_time(self):
         """Before the first step too, and after a restart; torques begin with a step."""
         joint = {"Type": "hinge", "Solids": ("Box", "space"), "Point": (0., .5), "Control": "proportional derivative",

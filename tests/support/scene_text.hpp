@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "parameters/strict_xml.hpp"
+#include "parameters/files/strict_xml.hpp"
 #include "parameters/validate.hpp"
 #include "support/world.hpp"
 

@@ -3,7 +3,7 @@ import itertools
 
 import numpy
 
-from lockstep_frames import FramesError, read_frames
+from lockstep_frames import FramesError, NoFrames, read_frames
 
 from report_page.blobs import pack_points, pack_simplices, pack_values
 
@@ -32,17 +32,20 @@ def coarsened(values, by):
 
 
 class FramePacker:
-    """Packs frames once: those of a run that goes on are asked for again and again."""
+    """Packs frames once: those of a run that goes on are asked for again and again, and one that cannot be read is about to be
+    replaced. Else (`is_done`) it is damaged."""
 
-    def __init__(self, blobs, most_frames, fields=None):
-        self.blobs, self.most_frames, self.fields = blobs, most_frames, fields
+    def __init__(self, blobs, most_frames, fields=None, is_done=False):
+        self.blobs, self.most_frames, self.fields, self.is_done = blobs, most_frames, fields, is_done
         self._packed, self._coarsening = {}, 1
 
     def pack(self, folder):
         """All frames of the folder (every nth of very many); an empty list if there are none yet."""
         try:
             frames = read_frames(folder)
-        except FramesError:
+        except FramesError as error:
+            if self.is_done and not isinstance(error, NoFrames):
+                raise
             return {"frames": [], "n_written": 0}
         every = -(-len(frames) // self.most_frames)
         chosen = [frame for i, frame in enumerate(frames) if i % every == 0 or i == len(frames) - 1]
@@ -79,7 +82,9 @@ class FramePacker:
             try:
                 self._packed[key] = self._pack(frame, whole)
             except FramesError:
-                return None  # a frame that the run is about to replace
+                if self.is_done:
+                    raise
+                return None
         return self._packed[key]
 
     def _pack(self, frame, whole):

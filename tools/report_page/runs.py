@@ -34,7 +34,7 @@ def pack_run(folder, blobs, frames):
         "facts": facts(summary, values, tables.get(HISTORY)),
         "stages": summary.get("stages", []),
         "parameters": [(name, value) for name, value, is_default in parameters if not is_default],
-        "scene": (folder / "input.xml").read_text(errors="replace") if (folder / "input.xml").is_file() else "",
+        "scene": "".join(path.read_text(errors="replace") for path in (folder / "input.xml", folder / "input.yaml") if path.is_file()),
         "tables": pack_tables(tables, blobs),
         **packed_frames,
     }

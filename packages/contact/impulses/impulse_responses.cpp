@@ -75,36 +75,79 @@ void ImpulseSolver<dim>::take_out_given(HeldRow& row) const {
   Terms left;
   for (const auto& [dof, weight] : row.weights) {
     const int id = static_cast<int>(dof);
-    if (mobility_.is_held(id) && !shapes_.follows(dof))
+    if (mobility_.is_held(id) && !shapes_.follows(dof)) {
       row.velocity -= weight * velocity_[id];
-    else if (weight != 0)
+      row.on_given.emplace_back(dof, weight);
+    } else if (weight != 0) {
       left.emplace_back(dof, weight);
+    }
   }
   row.weights = std::move(left);
 }
 
 template <int dim>
+template <typename Function>
+void ImpulseSolver<dim>::for_each_held(const Function& f) const {
+  for (const Row& row : rows_) {
+    if (row.normal_impulse <= 0)
+      continue;
+    f(row, row.contact.normal, row.target, row.normal_impulse, row.normal_response);
+    for (int k = 0; k < dim - 1 && !slides(row); ++k)
+      f(row, row.tangents.col(k), 0, row.tangent_impulse[k], row.tangent_response);
+  }
+}
+
+template <int dim>
 std::vector<HeldRow> ImpulseSolver<dim>::held_rows() const {
   std::vector<HeldRow> held;
-  const auto add = [&](const Row& row, const Point<dim>& direction, double velocity, double impulse,
-                       double response) {
+  for_each_held([&](const Row& row, const Point<dim>& direction, double velocity, double impulse,
+                    double response) {
     HeldRow one{impulse_on_both(row, direction), velocity - direction.dot(row.of_given), impulse,
                 response};
     take_out_given(one);
     held.push_back(std::move(one));
-  };
-  for (const Row& row : rows_) {
-    if (row.normal_impulse <= 0)
-      continue;
-    add(row, row.contact.normal, row.target, row.normal_impulse, row.normal_response);
-    for (int k = 0; k < dim - 1 && !slides(row); ++k)
-      add(row, row.tangents.col(k), 0, row.tangent_impulse[k], row.tangent_response);
-  }
+  });
   return held;
 }
 
 template <int dim>
-typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::sliding_impulse() const {
+void ImpulseSolver<dim>::add_pushes(const Row& row, const Point<dim>& impulse, int number,
+                                    std::vector<PrescribedPush<dim>>& pushes) const {
+  const auto add = [&](const ContactSide<dim>& side, double sign) {
+    if (side.solid < 0 || !system_.solids()[side.solid].prescribed)
+      return;
+    PrescribedPush<dim> push{number, side.solid, {}};
+    push.impulse.add(side.x, sign * impulse);
+    pushes.push_back(push);
+  };
+  add(solid_of(row), 1);
+  add(other_of(row), -1);
+}
+
+template <int dim>
+std::vector<PrescribedPush<dim>> ImpulseSolver<dim>::held_pushes() const {
+  std::vector<PrescribedPush<dim>> pushes;
+  int number = 0;
+  for_each_held([&](const Row& row, const Point<dim>& direction, double, double, double) {
+    add_pushes(row, direction, number++, pushes);
+  });
+  for (const Row& row : rows_) {
+    if (row.normal_impulse > 0 && slides(row))
+      add_pushes(row, row.tangents * row.tangent_impulse, PrescribedPush<dim>::whole, pushes);
+  }
+  return pushes;
+}
+
+template <int dim>
+std::vector<PrescribedPush<dim>> ImpulseSolver<dim>::pushes() const {
+  std::vector<PrescribedPush<dim>> pushes;
+  for (const Row& row : rows_)
+    add_pushes(row, impulse(row), PrescribedPush<dim>::whole, pushes);
+  return pushes;
+}
+
+template <int dim>
+typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::sliding_impulse(Terms& on_given) const {
   HeldRow all;
   for (const Row& row : rows_) {
     if (row.normal_impulse <= 0 || !slides(row))
@@ -113,6 +156,7 @@ typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::sliding_impulse() const {
       all.weights.push_back(term);
   }
   take_out_given(all);
+  on_given = std::move(all.on_given);
   return all.weights;
 }
 
@@ -122,13 +166,17 @@ template void ImpulseSolver<2>::extend_limits();
 template void ImpulseSolver<2>::find_velocity();
 template void ImpulseSolver<2>::take_out_given(HeldRow&) const;
 template std::vector<HeldRow> ImpulseSolver<2>::held_rows() const;
-template ImpulseSolver<2>::Terms ImpulseSolver<2>::sliding_impulse() const;
+template std::vector<PrescribedPush<2>> ImpulseSolver<2>::held_pushes() const;
+template std::vector<PrescribedPush<2>> ImpulseSolver<2>::pushes() const;
+template ImpulseSolver<2>::Terms ImpulseSolver<2>::sliding_impulse(Terms&) const;
 template int ImpulseSolver<3>::activate(int);
 template void ImpulseSolver<3>::find_response(const Row&, Compliance&, double&) const;
 template void ImpulseSolver<3>::extend_limits();
 template void ImpulseSolver<3>::find_velocity();
 template void ImpulseSolver<3>::take_out_given(HeldRow&) const;
 template std::vector<HeldRow> ImpulseSolver<3>::held_rows() const;
-template ImpulseSolver<3>::Terms ImpulseSolver<3>::sliding_impulse() const;
+template std::vector<PrescribedPush<3>> ImpulseSolver<3>::held_pushes() const;
+template std::vector<PrescribedPush<3>> ImpulseSolver<3>::pushes() const;
+template ImpulseSolver<3>::Terms ImpulseSolver<3>::sliding_impulse(Terms&) const;
 
 }  // namespace lockstep

@@ -46,10 +46,16 @@ class ImpulseSolver {
   std::vector<double> generalized_impulse() const;
   /// Rows of contacts that push, for a coupled solve to hold.
   std::vector<HeldRow> held_rows() const;
-  /// Moves given dofs from the weights of a row to its velocity.
+  /// Pushes of contacts on prescribed solids: by the numbers of `held_rows`, and of friction that
+  /// slides as it is.
+  std::vector<PrescribedPush<dim>> held_pushes() const;
+  /// Pushes on them by all impulses, as they are.
+  std::vector<PrescribedPush<dim>> pushes() const;
+  /// Moves given dofs from the weights of a row to its velocity and to `HeldRow::on_given`.
   void take_out_given(HeldRow& row) const;
-  /// Impulses, by dof, of the friction of contacts that slide.
-  Terms sliding_impulse() const;
+  /// Impulses, by dof, of the friction of contacts that slide, and in `on_given` their part on
+  /// given dofs.
+  Terms sliding_impulse(Terms& on_given) const;
   /// Impulse of walls and prescribed solids on the others.
   Momentum<dim> external_impulse() const;
 
@@ -99,6 +105,12 @@ class ImpulseSolver {
   double relax_normal(Row& row);
   double relax_friction(Row& row);
   bool slides(const Row& row) const;
+  /// Calls f(row, direction, target, impulse, response) for what a coupled solve is to hold.
+  template <typename Function>
+  void for_each_held(const Function& f) const;
+  /// Adds what an impulse on a contact gives to its prescribed solids.
+  void add_pushes(const Row& row, const Point<dim>& impulse, int number,
+                  std::vector<PrescribedPush<dim>>& pushes) const;
   ContactSide<dim> solid_of(const Row& row) const;
   ContactSide<dim> other_of(const Row& row) const;
   Terms impulse_on_both(const Row& row, const Point<dim>& impulse) const;

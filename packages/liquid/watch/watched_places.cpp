@@ -7,6 +7,7 @@
 #include "liquid/common/flood.hpp"
 #include "liquid/common/seen_cells.hpp"
 #include "liquid/watch/swept_cells.hpp"
+#include "parameters/mistakes.hpp"
 
 namespace lockstep {
 
@@ -50,15 +51,18 @@ void WatchedPlaces<dim>::begin(const Surface& surface) {
   anchors_.clear();
   report_.assign(watches_.size(), {});
   places_.assign(places_.size(), 0);
-  for (std::size_t w = 0; w < watches_.size(); ++w) {
-    const Point<dim>& point = watches_[w].point;
-    const std::string name =
-        fmt::format("point {:.6g} of the watch \"{}\"",
-                    fmt::join(point.data(), point.data() + dim, ", "), watches_[w].name);
-    cells_seen_from_given<dim>(point, name, domain_, near);
-    anchors_.emplace_back(watches_[w], present);
+  Mistakes mistakes;
+  for (const Watch<dim>& watch : watches_)
+    mistakes.collect([&] {
+      const std::string name =
+          fmt::format("point {:.6g} of the watch \"{}\"",
+                      fmt::join(watch.point.data(), watch.point.data() + dim, ", "), watch.name);
+      cells_seen_from_given<dim>(watch.point, name, domain_, near);
+      anchors_.emplace_back(watch, present);
+    });
+  mistakes.throw_all();
+  for (std::size_t w = 0; w < watches_.size(); ++w)
     mark_place(find_place(w, solids, near, nullptr), w, places_);
-  }
 }
 
 template <int dim>

@@ -1,6 +1,7 @@
 #include "mac/forces/scalars.hpp"
 
 #include "base/errors.hpp"
+#include "mac/forces/scalar_mistakes.hpp"
 #include "parameters/field_formula.hpp"
 #include "staggered/domain/parameter_values.hpp"
 
@@ -68,6 +69,27 @@ ScalarSource<dim> read_source(const ParameterList& list) {
     source.velocity = point_value<dim>(list, "Velocity");
   return source;
 }
+
+/// Throws InputError for a source outside of the domain or of what the fluid does not carry.
+template <int dim>
+void check_source(const ScalarSource<dim>& source, const std::string& name,
+                  const ParameterList& fluid, const Box<dim>& bounds) {
+  check_input(bounds.intersects(source.shape.bounds()),
+              "The source \"{}\" in \"Fluid/Sources\" lies outside of the domain and feeds "
+              "nothing; move it inside.",
+              name);
+  check_input(!source.liquid || fluid.isSublist("Free Surface"),
+              "The source \"{}\" in \"Fluid/Sources\" feeds liquid, but the fluid fills its domain "
+              "already; add the list \"Fluid/Free Surface\".",
+              name);
+  for (const auto& feed : source.feeds) {
+    const char* const list = feed.scalar == "smoke" ? "Smoke" : "Temperature";
+    check_input(fluid.isSublist(list),
+                "The source \"{}\" in \"Fluid/Sources\" feeds {}, but the fluid carries none; add "
+                "the list \"Fluid/{}\".",
+                name, feed.scalar, list);
+  }
+}
 }  // namespace
 
 template <int dim>
@@ -101,24 +123,26 @@ Scalars<dim>::Scalars(const MacDomain<dim>& domain, const ParameterList& fluid) 
     scalars_.push_back(read_scalar(domain, fluid.sublist("Temperature"), "temperature", "K"));
   const ParameterList& sources = fluid.sublist("Sources");
   for (auto it = sources.begin(); it != sources.end(); ++it) {
-    const std::string name = sources.name(it);
-    sources_.push_back(read_source<dim>(sources.sublist(name)));
-    check_input(domain.bounds().intersects(sources_.back().shape.bounds()),
-                "The source \"{}\" in \"Fluid/Sources\" lies outside of the domain and feeds "
-                "nothing; move it inside.",
-                name);
-    check_input(
-        !sources_.back().liquid || fluid.isSublist("Free Surface"),
-        "The source \"{}\" in \"Fluid/Sources\" feeds liquid, but the fluid fills its domain "
-        "already; add the list \"Fluid/Free Surface\".",
-        name);
-    for (const auto& feed : sources_.back().feeds)
-      check_input(
-          find(feed.scalar) != nullptr,
-          "The source \"{}\" in \"Fluid/Sources\" feeds {}, but the fluid carries none; add "
-          "the list \"Fluid/{}\".",
-          name, feed.scalar, feed.scalar == "smoke" ? "Smoke" : "Temperature");
+    sources_.push_back(read_source<dim>(sources.sublist(sources.name(it))));
+    check_source(sources_.back(), sources.name(it), fluid, domain.bounds());
   }
+}
+
+template <int dim>
+void find_scalar_mistakes(const ParameterList& fluid, const Box<dim>& bounds, Mistakes& mistakes) {
+  for (const char* scalar : {"Smoke", "Temperature"}) {
+    if (!fluid.isSublist(scalar))
+      continue;
+    const ParameterList& regions = fluid.sublist(scalar).sublist("Regions");
+    for (auto it = regions.begin(); it != regions.end(); ++it)
+      mistakes.collect([&] { read_shape<dim>(regions.sublist(regions.name(it))); });
+  }
+  const ParameterList& sources = fluid.sublist("Sources");
+  for (auto it = sources.begin(); it != sources.end(); ++it)
+    mistakes.collect([&] {
+      const auto source = read_source<dim>(sources.sublist(sources.name(it)));
+      check_source(source, sources.name(it), fluid, bounds);
+    });
 }
 
 template <int dim>
@@ -188,6 +212,8 @@ void Scalars<dim>::push(const MacGeometry<dim>& geometry, double time,
 
 template class Scalars<2>;
 template class Scalars<3>;
+template void find_scalar_mistakes(const ParameterList&, const Box<2>&, Mistakes&);
+template void find_scalar_mistakes(const ParameterList&, const Box<3>&, Mistakes&);
 template void declare_scalars<2>(ParameterList&);
 template void declare_scalars<3>(ParameterList&);
 

@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "parameters/formula.hpp"
+#include "parameters/mistakes.hpp"
 #include "staggered/domain/inflow_scalars.hpp"
 #include "staggered/domain/parameter_values.hpp"
 
@@ -178,13 +179,14 @@ void set_grid_flags(const Boundary<dim>& boundary, GridDescription<dim>& grid) {
   }
 }
 
+namespace {
+/// Corners and cells; throws InputError if these are no cubes.
 template <int dim>
-DomainDescription<dim> read_domain(const ParameterList& list) {
-  DomainDescription<dim> result;
+GridDescription<dim> read_grid(const ParameterList& list) {
   const Point<dim> lower = point_value<dim>(list, "Lower");
   const Point<dim> upper = point_value<dim>(list, "Upper");
   const auto& cells = list.get<ParameterArray<int>>("Cells");
-  GridDescription<dim>& grid = result.grid;
+  GridDescription<dim> grid;
   grid.lower = lower;
   grid.spacing = (upper[0] - lower[0]) / cells[0];
   for (int a = 0; a < dim; ++a)
@@ -202,21 +204,43 @@ DomainDescription<dim> read_domain(const ParameterList& list) {
         "In \"Domain\", the cells must be as long along every axis, but they are {} m along x "
         "and {} m along {}; change \"Cells\" or the corners.",
         grid.spacing, h, axis_names[a]);
-    for (int end = 0; end < 2; ++end)
-      result.boundary.sides[a][end] =
-          read_side<dim>(list.sublist("Sides").sublist(side_name(a, end)), {lower, upper}, a, end);
-    check_input(
-        (result.boundary.side(a, 0).type == SideType::periodic) ==
-            (result.boundary.side(a, 1).type == SideType::periodic),
-        "In \"Domain/Sides\", only one of \"{}\" and \"{}\" is periodic; either both are or "
-        "none.",
-        side_name(a, 0), side_name(a, 1));
   }
-  for (int a = 0; a < dim; ++a)
-    check_input(!result.boundary.periodic(a) || cells[a] >= 3,
-                "In \"Domain\", the periodic axis {} has {} cells, but needs 3 or more.",
-                axis_names[a], cells[a]);
-  set_grid_flags(result.boundary, grid);
+  return grid;
+}
+
+/// Joined sides.
+template <int dim>
+void check_periodic(const Boundary<dim>& boundary, const GridDescription<dim>& grid, int axis) {
+  check_input((boundary.side(axis, 0).type == SideType::periodic) ==
+                  (boundary.side(axis, 1).type == SideType::periodic),
+              "In \"Domain/Sides\", only one of \"{}\" and \"{}\" is periodic; either both are or "
+              "none.",
+              side_name(axis, 0), side_name(axis, 1));
+  check_input(!boundary.periodic(axis) || grid.n_cells[axis] >= 3,
+              "In \"Domain\", the periodic axis {} has {} cells, but needs 3 or more.",
+              axis_names[axis], grid.n_cells[axis]);
+}
+}  // namespace
+
+template <int dim>
+DomainDescription<dim> read_domain(const ParameterList& list) {
+  DomainDescription<dim> result;
+  Mistakes mistakes;
+  mistakes.collect([&] { result.grid = read_grid<dim>(list); });
+  const bool has_grid = mistakes.empty();
+  const Box<dim> box(point_value<dim>(list, "Lower"), point_value<dim>(list, "Upper"));
+  for (int a = 0; a < dim && !box.isEmpty(); ++a) {
+    const std::size_t n_before = mistakes.messages().size();
+    for (int end = 0; end < 2; ++end)
+      mistakes.collect([&] {
+        result.boundary.sides[a][end] =
+            read_side<dim>(list.sublist("Sides").sublist(side_name(a, end)), box, a, end);
+      });
+    if (has_grid && mistakes.messages().size() == n_before)
+      mistakes.collect([&] { check_periodic(result.boundary, result.grid, a); });
+  }
+  mistakes.throw_all();
+  set_grid_flags(result.boundary, result.grid);
   return result;
 }
 
@@ -224,12 +248,15 @@ template <int dim>
 void read_waves(const ParameterList& fluid, const ParameterList& domain,
                 DomainDescription<dim>& description) {
   const Box<dim> box(point_value<dim>(domain, "Lower"), point_value<dim>(domain, "Upper"));
+  Mistakes mistakes;
   for (int axis = 0; axis < dim; ++axis)
-    for (int end = 0; end < 2; ++end) {
-      const std::string name = side_name(axis, end);
-      description.boundary.sides[axis][end].wave = read_inflow_wave<dim>(
-          domain.sublist("Sides").sublist(name), fluid, box, axis, end, "Domain/Sides/" + name);
-    }
+    for (int end = 0; end < 2; ++end)
+      mistakes.collect([&] {
+        const std::string name = side_name(axis, end);
+        description.boundary.sides[axis][end].wave = read_inflow_wave<dim>(
+            domain.sublist("Sides").sublist(name), fluid, box, axis, end, "Domain/Sides/" + name);
+      });
+  mistakes.throw_all();
 }
 
 template void read_waves<2>(const ParameterList&, const ParameterList&, DomainDescription<2>&);

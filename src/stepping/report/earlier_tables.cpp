@@ -6,8 +6,8 @@
 
 #include "base/errors.hpp"
 #include "output/on_root.hpp"
+#include "parameters/files/parameter_file.hpp"
 #include "parameters/parameter_rule.hpp"
-#include "parameters/strict_xml.hpp"
 
 namespace lockstep {
 namespace {
@@ -41,7 +41,8 @@ std::set<std::string> recorded_tables(const std::string& directory) {
   try {
     return fs::exists(file)
                ? tables_of(
-                     read_xml(file, Communicator(Teuchos::rcp(new Teuchos::SerialComm<int>))).list)
+                     read_parameters(file, Communicator(Teuchos::rcp(new Teuchos::SerialComm<int>)))
+                         .list)
                : std::set<std::string>();
   } catch (const Failure&) {
     return {};  // the file is somebody else's

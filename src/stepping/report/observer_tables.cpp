@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "output/checkpoint.hpp"
+#include "parameters/mistakes.hpp"
 #include "parameters/parameter_rule.hpp"
 
 namespace lockstep {
@@ -50,7 +51,6 @@ ObserverTables<dim>::ObserverTables(const ObserverRegistry<dim>& registry,
                                     const ParameterList& observers, const Communicator& comm,
                                     const std::string& directory, double start_time) {
   for (const auto& [name, entry] : entries(observers)) {
-    check_observer_name(name);
     const ParameterList& list = observers.sublist(name);
     Watch watch{name, list.get<std::string>("Type"), {start_time, list.get<double>("Interval")}};
     watch.observer = registry.create(watch.type, list);
@@ -58,6 +58,18 @@ ObserverTables<dim>::ObserverTables(const ObserverRegistry<dim>& registry,
                                                  table_columns(watch.observer->columns()));
     watches_.push_back(std::move(watch));
   }
+}
+
+template <int dim>
+void ObserverTables<dim>::check(const ObserverRegistry<dim>& registry,
+                                const ParameterList& observers) {
+  Mistakes mistakes;
+  for (const auto& [name, entry] : entries(observers)) {
+    const ParameterList& list = observers.sublist(name);
+    mistakes.collect([&, &name = name] { check_observer_name(name); });
+    mistakes.collect([&] { registry.create(list.get<std::string>("Type"), list); });
+  }
+  mistakes.throw_all();
 }
 
 template <int dim>
@@ -69,10 +81,12 @@ bool ObserverTables<dim>::want_energy() const {
 template <int dim>
 void ObserverTables<dim>::try_out(const ObserverRegistry<dim>& registry,
                                   const ParameterList& observers, const RunView<dim>& run) {
+  Mistakes mistakes;
   for (const auto& [name, entry] : entries(observers)) {
     const ParameterList& list = observers.sublist(name);
-    registry.create(list.get<std::string>("Type"), list)->observe(run);
+    mistakes.collect([&] { registry.create(list.get<std::string>("Type"), list)->observe(run); });
   }
+  mistakes.throw_all();
 }
 
 template <int dim>

@@ -18,9 +18,12 @@ template <int dim>
 class ObserverTables {
  public:
   /// `observers`: the validated list "Observers" of a scene. Intervals count from `start_time` [s].
-  /// Throws InputError for a name that cannot be that of a file, or is that of another table.
   ObserverTables(const ObserverRegistry<dim>& registry, const ParameterList& observers,
                  const Communicator& comm, const std::string& directory, double start_time);
+
+  /// Throws InputError with all mistakes that observers show when they are made, names that cannot
+  /// be those of files and names of other tables among them.
+  static void check(const ObserverRegistry<dim>& registry, const ParameterList& observers);
 
   bool empty() const { return watches_.empty(); }
   bool want_energy() const;  ///< any of them. Local.
@@ -35,8 +38,8 @@ class ObserverTables {
   void observe(long long step, const RunView<dim>& run, bool at_end);
   void save(CheckpointWriter& checkpoint) const;
   void load(CheckpointReader& checkpoint);
-  /// Lets other observers, made from the same lists, look once, so that what cannot be seen is told
-  /// before a run writes anything. Throws InputError.
+  /// Lets other observers, made from the same lists, look once, so that all that cannot be seen is
+  /// told before a run writes anything. Throws InputError.
   static void try_out(const ObserverRegistry<dim>& registry, const ParameterList& observers,
                       const RunView<dim>& run);
 

@@ -73,18 +73,26 @@ std::vector<double> impulses_of(const std::vector<HeldRow>& rows, const Vector& 
 template <int dim>
 void report_impulses(const Vector& velocity, const SolidSystem<dim>& solids,
                      ContactReport<dim>& contacts) {
-  const auto impulse = make_vector(solids.map());
+  const auto impulse = make_vector(solids.map()), on_given = make_vector(solids.map());
   add_to(contacts.sliding, 1, *impulse);
+  add_to(contacts.sliding_on_given, 1, *on_given);
   contacts.limit_impulses.clear();
   const std::vector<double> impulses = impulses_of(contacts.held, velocity, solids.comm());
   for (std::size_t k = 0; k < impulses.size(); ++k) {
     const HeldRow& row = contacts.held[k];
     add_to(row.weights, impulses[k], *impulse);
+    add_to(row.on_given, impulses[k], *on_given);
     for (const auto& [dof, weight] : row.weights)
       if (row.is_limit)
         contacts.limit_impulses.emplace_back(dof, impulses[k] * weight);
   }
+  for (PrescribedPush<dim>& push : contacts.on_prescribed)
+    if (push.row != PrescribedPush<dim>::whole) {
+      push.impulse.for_each_part([&](auto& part) { part *= impulses[push.row]; });
+      push.row = PrescribedPush<dim>::whole;
+    }
   contacts.impulse = impulse;
+  contacts.impulse_on_given = on_given;
   contacts.external_impulse = solids.momentum(*impulse);
   contacts.reactions = Teuchos::null;  // the solve has them
 }

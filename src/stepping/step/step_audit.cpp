@@ -177,7 +177,22 @@ void StepAudit<dim>::book_solids(const StepContext<dim>& context, const StageRes
     gained->update(1, *stages.friction.viscous.solid_impulse, 1);
   add_each(solids.momentum_of_each(*gained), report.hydrodynamic_impulse);
   if (!stages.end.contact_impulse.is_null())
-    report.contact_impulse = solids.momentum_of_each(*stages.end.contact_impulse);
+    report.contact_impulse = contact_impulses(stages.end);
+}
+
+/// Impulses of contact on every solid, by themselves on those dofs and solids whose motion is
+/// given.
+template <int dim>
+std::vector<Momentum<dim>> StepAudit<dim>::contact_impulses(
+    const MotionWithContacts<dim>& motion) const {
+  const SolidSystem<dim>& solids = *components_.solids;
+  Vector total(*motion.contact_impulse, Teuchos::Copy);
+  if (!motion.contact.impulse_on_given.is_null())
+    total.update(1, *motion.contact.impulse_on_given, 1);
+  std::vector<Momentum<dim>> on_each = solids.momentum_of_each(total);
+  for (const PrescribedPush<dim>& push : motion.contact.on_prescribed)
+    on_each[push.solid] += push.impulse;
+  return on_each;
 }
 
 template <int dim>

@@ -53,6 +53,7 @@ class StepAudit {
   void book_pressure(const StageResults<dim>& stages, StepReport<dim>& report) const;
   void book_solids(const StepContext<dim>& context, const StageResults<dim>& stages,
                    StepReport<dim>& report) const;
+  std::vector<Momentum<dim>> contact_impulses(const MotionWithContacts<dim>& motion) const;
   void find_errors(StepReport<dim>& report) const;
 
   Components<dim>& components_;

@@ -148,6 +148,28 @@ ParameterList line(double x0, double y0, double x1, double y1) {
   return list;
 }
 
+TEST(Flow, ThroughALineInAnyDirection) {
+  const HalfPlane fluid;
+  const auto reading = [&](const ParameterList& list) {
+    return Flow<2>(list).observe({1, 0.1, fluid, no_solids}).at(0);
+  };
+  EXPECT_THAT(reading(line(1.5, 0, 1.5, 2)), ElementsAre(2, 2, 15));
+  EXPECT_THAT(reading(line(1.5, 2, 1.5, 0)), ElementsAre(-2, 2, 15));
+  // The integral of y dy - 2 dx, both linear.
+  EXPECT_THAT(reading(line(1.2, 0, 1.8, 1.5)),
+              ElementsAre(DoubleNear(1.125 - 1.2, 1e-12), DoubleNear(std::hypot(0.6, 1.5), 1e-12),
+                          DoubleNear(15, 1e-12)));
+  EXPECT_THROW(reading(line(1.2, 0, 1.8, 2.5)), InputError);
+  EXPECT_THROW(Flow<2>(line(1, 1, 1, 1)), InputError);
+}
+
+TEST(Flow, AWindowIsGivenInOneWay) {
+  ParameterList both = box(1.5, 0, 1.5, 2);
+  both.set("Points", make_array<double>({1, 0, 1, 1}));
+  EXPECT_THROW(Flow<2>{both}, InputError);
+  EXPECT_THROW(Flow<2>{ParameterList()}, InputError);
+}
+
 TEST(Gauge, MeasuresWhatIsWet) {
   const Pool pool;
   const auto reading = [&](const ParameterList& list) {

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "parameters/files/parameter_file.hpp"
 #include "support.hpp"
 
 namespace lockstep::test {
@@ -172,9 +173,9 @@ TEST(StrictXml, EveryRankReadsOrFailsAlike) {
   if (is_root(comm))
     std::ofstream(file) << file_with(R"xml(name="X" type="double" value="2.5")xml");
 
-  const Document document = read_xml(file, comm);
-  const std::string missing = input_error([&] { read_xml("no/such.xml", comm); });
-  const std::string folder = input_error([&] { read_xml(".", comm); });
+  const Document document = read_parameters(file, comm);
+  const std::string missing = input_error([&] { read_parameters("no/such.xml", comm); });
+  const std::string folder = input_error([&] { read_parameters(".", comm); });
 
   EXPECT_EQ(document.list.sublist("Fluid").get<double>("X"), 2.5);
   EXPECT_EQ(missing,

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "base/errors.hpp"
+#include "parameters/files/strict_xml.hpp"
 #include "parameters/parameter_list.hpp"
-#include "parameters/strict_xml.hpp"
 
 namespace lockstep::test {
 

@@ -7,8 +7,9 @@
 #include <fstream>
 
 #include "base/errors.hpp"
+#include "parameters/files/parameter_file.hpp"
+#include "parameters/files/strict_xml.hpp"
 #include "parameters/mistakes.hpp"
-#include "parameters/strict_xml.hpp"
 #include "scenes/expand_scene.hpp"
 #include "scenes/include.hpp"
 
@@ -271,7 +272,7 @@ class Includes : public testing::Test {
   }
   Document read(const std::string& name, std::vector<std::string> settings = {}) const {
     Document document =
-        read_xml((folder_ / name).string(), Tpetra::getDefaultComm(), FormulaPolicy::kept);
+        read_parameters((folder_ / name).string(), Tpetra::getDefaultComm(), FormulaPolicy::kept);
     include_scenes(document, settings, Tpetra::getDefaultComm());
     expand_scene(document, settings, solid_types);
     return document;

@@ -1,4 +1,4 @@
-#include "parameters/strict_xml.hpp"
+#include "parameters/files/strict_xml.hpp"
 
 #include <expat.h>
 
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/errors.hpp"
-#include "base/regular_file.hpp"
 #include "base/shortened.hpp"
+#include "parameters/files/claim_name.hpp"
 #include "parameters/formula.hpp"
 #include "parameters/mistakes.hpp"
 #include "parameters/strict_values.hpp"
@@ -18,12 +18,6 @@
 namespace lockstep {
 
 namespace {
-
-/// Functions that walk through lists recurse into nested ones, so that the depth is bounded.
-constexpr std::size_t most_nested = 100;
-
-/// Names go into messages, tables and files.
-constexpr std::size_t longest_name = 1000;
 
 using Attributes = std::map<std::string, std::string>;
 
@@ -128,7 +122,7 @@ class Reader {
     }
     guard([&] {
       check_input(!is_within_parameter, "a <Parameter> holds nothing; end it with \"/>\".");
-      if (n_open <= most_nested)  // deeper ones have been told of
+      if (n_open <= most_nested_lists)  // deeper ones have been told of
         start_element(element, attributes);
     });
     if (!is_parameter && open_.size() == n_open)  // a dropped list may hold mistakes, too
@@ -165,10 +159,10 @@ class Reader {
       return;
     }
     const std::string name = attributes.count("name") ? attributes.at("name") : "";
-    check_input(open_.size() < most_nested,
+    check_input(open_.size() < most_nested_lists,
                 "lists are nested more than {} deep, which no parameter file needs; close some "
                 "<ParameterList>.",
-                most_nested);
+                most_nested_lists);
     const std::string path = claim("ParameterList", name);
     ParameterList& list = open_.back().list->sublist(name);
     open_.push_back({&list, path, line()});
@@ -234,15 +228,7 @@ class Reader {
   std::string claim(const std::string& element, const std::string& name) {
     const OpenList& open = open_.back();
     check_input(!trimmed(name).empty(), "the <{}> has an empty name.", element);
-    check_input(name.size() <= longest_name,
-                "{}, the name \"{}\" has {} characters; at most {} are accepted: shorten it.",
-                in_list(open.path), shortened(name), name.size(), longest_name);
-    const std::string path = join_path(open.path, name);
-    check_input(!open.list->isParameter(name),
-                "{}, \"{}\" is given twice, first in {}. Remove one of the two.",
-                in_list(open.path), name, document_.source.place(path));
-    document_.source.places[path] = here();
-    return path;
+    return claim_name(document_, *open.list, open.path, name, here());
   }
 
   FormulaPolicy formulas_;
@@ -256,40 +242,10 @@ class Reader {
   bool is_broken_ = false;
 };
 
-/// Reads all bytes of the file; `failure` gets the reason if it cannot be read.
-std::string read_bytes(const std::string& file, std::string& failure) {
-  std::string why;
-  std::string text = read_regular_file(file, why);
-  if (text.size() >= (std::size_t{1} << 30))
-    why = "it is larger than a parameter file can be";
-  if (why.empty())
-    return text;
-  failure =
-      fmt::format("Cannot read \"{}\": {}. Give the path of an XML parameter file.", file, why);
-  return "";
-}
-
 }  // namespace
 
 Document read_xml_string(const std::string& text, const std::string& name, FormulaPolicy formulas) {
   return Reader(name, formulas).read(text);
-}
-
-Document read_xml(const std::string& file, const Communicator& comm, FormulaPolicy formulas) {
-  std::string text, failure;
-  if (is_root(comm))
-    text = read_bytes(file, failure);
-  try {
-    throw_on_all(comm, failure, static_cast<int>(ExitCode::bad_input));
-  } catch (const Failure& error) {
-    throw InputError(error.what());
-  }
-  const MPI_Comm mpi = raw_communicator(comm);
-  int size = static_cast<int>(text.size());
-  MPI_Bcast(&size, 1, MPI_INT, 0, mpi);
-  text.resize(size);
-  MPI_Bcast(text.data(), size, MPI_CHAR, 0, mpi);
-  return read_xml_string(text, file, formulas);
 }
 
 }  // namespace lockstep
