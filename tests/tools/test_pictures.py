@@ -37,6 +37,7 @@ class FixedArray:
 
     def __init__(self, values):
         self.values = values
+        self.n_values = values.size
 
     def read(self, selection=...):
         return self.values[selection]
