@@ -11,8 +11,8 @@ namespace lockstep {
 
 namespace {
 
-/// The block factories of Teko 13.2 that suit a coupled system.
-const std::vector<TekoFactory>& block_factories() {
+/// The factories of Teko 13.2 that suit a coupled system or one of its blocks.
+const std::vector<TekoFactory>& known_factories() {
   static const std::vector<TekoFactory> factories = {
       {"Block Jacobi", {"Inverse Type", "Inverse Type #"}},
       {"Block Gauss-Seidel", {"Inverse Type", "Inverse Type #", "Use Upper Triangle"}},
@@ -26,7 +26,11 @@ const std::vector<TekoFactory>& block_factories() {
        {"Strategy Name", "Strategy Settings", "Is Symmetric", "Inverse Type",
         "Inverse Velocity Type", "Inverse Pressure Type", "Ignore Boundary Rows", "Use LDU",
         "Use Mass Scaling", "Use W-Scaling", "Eigen Solver Iterations", "Scaling Type",
-        "Assume Stable Discretization"}}};
+        "Assume Stable Discretization"}},
+      {"Diagonal Scaling", {"Inverse Factory", "Scaling Type", "Diagonal Type"}},
+      {"Explicit Diagonal Preconditioner", {"Diagonal Type"}},
+      {"Iterative Preconditioner", {"Preconditioner Type", "Iteration Count"}},
+      {"Neumann Series", {"Number of Terms", "Scaling Type"}}};
   return factories;
 }
 
@@ -42,11 +46,7 @@ const std::vector<std::string>& unchecked_types() {
                                                  "MueLu",
                                                  "Block Add",
                                                  "Block Multiply",
-                                                 "Diagonal Scaling",
                                                  "Diagnostic Inverse",
-                                                 "Explicit Diagonal Preconditioner",
-                                                 "Iterative Preconditioner",
-                                                 "Neumann Series",
                                                  "Identity",
                                                  "NS SIMPLE-Timed"};
   return types;
@@ -67,7 +67,7 @@ class LibraryCheck {
  public:
   LibraryCheck(const ParameterList& library, const Source& source, const std::string& path,
                const std::vector<TekoFactory>& own)
-      : library_(library), source_(source), path_(path), factories_(block_factories()) {
+      : library_(library), source_(source), path_(path), factories_(known_factories()) {
     factories_.insert(factories_.end(), own.begin(), own.end());
     types_ = unchecked_types();
     for (const TekoFactory& factory : factories_)
@@ -131,7 +131,8 @@ class LibraryCheck {
   void check_inverse(const std::string& path, const std::string& name,
                      const std::string& value) const {
     const bool names_inverse =
-        name.find("Inverse") != std::string::npos && name.find("Type") != std::string::npos;
+        name == "Inverse Factory" || name == "Preconditioner Type" ||
+        (name.find("Inverse") != std::string::npos && name.find("Type") != std::string::npos);
     const bool diagonal =
         name == "Explicit Velocity Inverse Type" && contains(diagonal_types, value);
     if (!names_inverse || diagonal || contains(inverses_, value))

@@ -2,8 +2,10 @@
 #include <Teko_CloneFactory.hpp>
 #include <Teko_InverseFactory.hpp>
 #include <Teko_InverseLibrary.hpp>
+#include <Teko_NeumannSeriesPreconditionerFactory.hpp>
 #include <Teko_StratimikosFactory.hpp>
 #include <Teko_Utilities.hpp>
+#include <Teuchos_AbstractFactoryStd.hpp>
 #include <Thyra_DefaultBlockedLinearOp.hpp>
 #include <Thyra_ScaledAdjointLinearOpBase.hpp>
 
@@ -76,6 +78,11 @@ void register_teko(Stratimikos::DefaultLinearSolverBuilder& builder) {
     return true;
   }();
   static_cast<void>(registered);
+  // Teko adds this one itself only to a builder of its own.
+  builder.setPreconditioningStrategyFactory(
+      Teuchos::abstractFactoryStd<Thyra::PreconditionerFactoryBase<double>,
+                                  Teko::NeumannSeriesPreconditionerFactory<double>>(),
+      "Neumann Series");
   Teko::addTekoToStratimikosBuilder(builder, "Teko");
 }
 

@@ -5,6 +5,7 @@
 namespace lockstep::test {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 /// A library of one factory, whose parameters begin in line 4, and of "CG".
@@ -44,6 +45,18 @@ TEST(TekoLibrary, RefusesAMisspeltParameterOfAFactory) {
   EXPECT_THAT(checking(text("Type", "NS SIMPLE") + text("Inverse Type 1", "CG")),
               StartsWith("solver.xml, line 5: in \"Library/Outer\", \"Inverse Type 1\" is not a "
                          "parameter of \"NS SIMPLE\"."));
+}
+
+TEST(TekoLibrary, ChecksFactoriesForOneBlock) {
+  EXPECT_EQ(checking(text("Type", "Diagonal Scaling") + text("Inverse Factory", "CG")), "");
+  EXPECT_EQ(checking(text("Type", "Neumann Series") + text("Scaling Type", "Diagonal")), "");
+  EXPECT_THAT(checking(text("Type", "Diagonal Scaling") + text("Inverse Type", "CG")),
+              HasSubstr("\"Inverse Type\" is not a parameter of \"Diagonal Scaling\""));
+  EXPECT_THAT(checking(text("Type", "Neumann Series") + text("Number of Term", "3")),
+              HasSubstr("Did you mean \"Number of Terms\"?"));
+  EXPECT_THAT(
+      checking(text("Type", "Iterative Preconditioner") + text("Preconditioner Type", "GC")),
+      HasSubstr("\"Preconditioner Type\" is \"GC\""));
 }
 
 TEST(TekoLibrary, RefusesUnknownTypesAndInverses) {

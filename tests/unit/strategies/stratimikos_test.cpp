@@ -139,6 +139,27 @@ TEST(Stratimikos, FactoriesOfTeko) {
   }
 }
 
+/// Factories of Teko for one block, here A beside an exact inverse of C.
+TEST(Stratimikos, FactoriesOfTekoForOneBlock) {
+  if (world()->getSize() > 2)
+    GTEST_SKIP() << "nothing that two ranks do not show";
+  ParameterList neumann = factory("Neumann Series", {{"Scaling Type", "Diagonal"}});
+  neumann.set("Number of Terms", 3);
+  ParameterList repeated =
+      factory("Iterative Preconditioner", {{"Preconditioner Type", "Incomplete Cholesky"}});
+  repeated.set("Iteration Count", 2);
+  for (const ParameterList& one :
+       {neumann, repeated,
+        factory("Diagonal Scaling", {{"Inverse Factory", "Incomplete Cholesky"}}),
+        factory("Explicit Diagonal Preconditioner", {{"Diagonal Type", "AbsRowSum"}})}) {
+    SCOPED_TRACE(one.get<std::string>("Type"));
+    ParameterList list = gmres_with(
+        factory("Block Jacobi", {{"Inverse Type 1", "A"}, {"Inverse Type 2", "Solids"}}));
+    library_of(list).sublist("A").setParameters(one);
+    expect_exact(list, SaddleProblem(world(), {}));
+  }
+}
+
 /// Our inverses, by their parameters: in an open and a closed tank, and where a piston closes it.
 TEST(Stratimikos, InversesOfOurs) {
   std::vector<ParameterList> lists(5, shipped_list("minres-teko"));
