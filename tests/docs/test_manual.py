@@ -91,7 +91,7 @@ class BrokenPages(unittest.TestCase):
     def test_a_broken_link_stops_it(self):
         with tempfile.TemporaryDirectory() as folder:
             copy = Path(folder) / "tree"
-            for part in ("docs", "template", "xml-params", "tools", "src/interfaces"):
+            for part in ("docs", "notebooks", "template", "xml-params", "tools", "src/interfaces"):
                 shutil.copytree(ROOT / part, copy / part)
             for part in ("README.md", "CHANGELOG.md", "CITATION.cff", "CODE_OF_CONDUCT.md", "CONTRIBUTING.md", "LICENSE"):
                 shutil.copy(ROOT / part, copy / part)

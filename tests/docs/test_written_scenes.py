@@ -15,9 +15,9 @@ del sys.argv[1:]
 END = "</ParameterList>\n"
 
 
-def blocks(page):
+def blocks(page, language="xml"):
     text = (ROOT / "docs" / page).read_text()
-    return re.findall(r"```xml\n(.*?)```", text, re.DOTALL)
+    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
 
 def with_lists(scene, *lists):
@@ -52,10 +52,13 @@ class WrittenScenes(unittest.TestCase):
             self.assertGreater(abs(mixed_face - flux), 0.1)
 
     def test_scene(self):
-        box, body, constants, formulas, many, like_another, preset, view = blocks("tutorials/write-a-scene.md")
+        box, body, schema, constants, formulas, many, like_another, preset, view = blocks("tutorials/write-a-scene.md")
         numbers = constants[: constants.index("  ...")]
         self.assertIn("valid", self.run_program(SIMULATE, self.write("box.xml", box), "--validate"))
         self.run_program(SIMULATE, self.write("body.xml", with_lists(box, body, view)), "--validate")
+        self.run_program(SIMULATE, self.write("completed.xml", schema + box), "--validate")
+        in_yaml, schema_of_yaml = blocks("tutorials/write-a-scene.md", "yaml")
+        self.run_program(SIMULATE, self.write("box.yaml", schema_of_yaml + in_yaml), "--validate")
         self.run_program(SIMULATE, self.write("many.xml", with_lists(box, numbers, many)), "--steps", "1", "--output", "many")
         velocity, height, force = formulas.splitlines()
         pool = (f'<ParameterList name="Free Surface"><ParameterList name="Liquid"><ParameterList name="Pool"><Parameter name="Type" type="string" value="level"/>'
