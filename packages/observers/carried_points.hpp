@@ -10,7 +10,7 @@ namespace lockstep {
 /// Name of an observer with this list, for messages: "Observers/NAME".
 std::string observer_path(const ParameterList& list);
 
-/// Where a point that moves with a solid is, and how fast.
+/// A point that moves with a solid: its place [m] and its velocity [m/s].
 template <int dim>
 struct CarriedPoint {
   Point<dim> position = Point<dim>::Zero();  ///< [m]

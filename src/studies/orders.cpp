@@ -10,7 +10,7 @@ namespace {
 
 constexpr double round_off = 1e-10;
 constexpr double safety_factor = 1.25;  ///< Roache's for three grids or more
-/// Of the schemes. A higher one that is observed by chance would make the index too small.
+/// The schemes have this order; a higher one, observed by chance, would make the index too small.
 constexpr double formal_order = 2;
 constexpr double largest_order = 20;
 constexpr double largest_difference_of_orders = 0.25;

@@ -131,12 +131,14 @@ class SidesAround {
     for (int axis = 0; axis < dim; ++axis) {
       for (int end = 0; end < 2; ++end) {
         const double cotangent = domain.boundary.side(axis, end).contact_cotangent;
+        if (cotangent == 0)
+          continue;
         const double distance =
             0.5 + (end == 0 ? middle[axis] : grid.n_cells()[axis] - 1 - middle[axis]);
         Point<dim> along = slope;
         along[axis] = 0;
         // A surface along the side does not meet it.
-        if (cotangent == 0 || distance > reach<dim> || along.norm() < 0.1 * slope.norm())
+        if (distance > reach<dim> || along.norm() < 0.1 * slope.norm())
           continue;
         sides_.push_back({axis, end == 0 ? -1. : 1., distance, cotangent * along.normalized()});
       }

@@ -33,7 +33,7 @@ struct BoundarySide {
       FieldFormula<dim>(std::vector<double>{0.});  ///< carried by the inflow [1]
   FieldFormula<dim> temperature =
       FieldFormula<dim>(std::vector<double>{0.});  ///< carried by the inflow [K]
-  /// Of the angle, measured in the liquid, at which a free surface meets a closed side [1].
+  /// Cotangent of the angle, in the liquid, at which a free surface meets a closed side [1].
   double contact_cotangent = 0;
 
   bool closed() const { return type == SideType::wall || type == SideType::slip_wall; }
