@@ -11,6 +11,7 @@
 #include "output/progress.hpp"
 #include "parameters/files/parameter_file.hpp"
 #include "parameters/files/strict_xml.hpp"
+#include "parameters/files/strict_yaml.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 #include "programs/open_scene.hpp"
@@ -88,11 +89,10 @@ std::string unknown(const char* kind, const std::string& name,
 Document read_scene(const OpenRequest& request, const Communicator& comm) {
   if (request.text.empty())
     return read_parameters(request.scene, comm, FormulaPolicy::kept);
-  Document document = read_xml_string(request.text, request.scene, FormulaPolicy::kept);
-  if (request.from_dictionary) {
-    document.source.places.clear();
-    document.source.mixes_numbers = true;
-  }
+  if (!request.from_dictionary)
+    return read_xml_string(request.text, request.scene, FormulaPolicy::kept);
+  Document document = read_yaml_string(request.text, request.scene);
+  document.source.places.clear();  // a dictionary has no lines
   return document;
 }
 

@@ -15,7 +15,7 @@ namespace lockstep {
 /// Arguments with which Python opens a run; see `simulate --help`.
 struct OpenRequest {
   std::string scene;             ///< path, or what stands for it in messages where `text` is given
-  std::string text;              ///< XML in place of a file; empty: there is a file
+  std::string text;              ///< XML, or JSON of a dictionary; empty: there is a file
   bool from_dictionary = false;  ///< `text` was made from one: it has no lines to name
   std::string output, restart;
   std::vector<std::string> settings;  ///< "List/Name=value"

@@ -46,8 +46,6 @@ CouplingChoice automatic_coupling(const SurfaceSnapshot<dim>& surface, double sp
     if (!solid.closed || solid.simplex_begin == solid.simplex_end)
       continue;  // a shell, or a body that the fluid does not see
     any_closed = true;
-    if (!solid.rigid)
-      return {whole, fmt::format("\"{}\" deforms", solid.name)};
     if (!solid.prescribed && solid.density < least_density * density)
       return {whole, fmt::format("\"{}\" is {:.2g} times as dense as the fluid", solid.name,
                                  solid.density / density)};
@@ -55,7 +53,7 @@ CouplingChoice automatic_coupling(const SurfaceSnapshot<dim>& surface, double sp
     if (cells < least_thickness)
       return {whole, fmt::format("\"{}\" is {:.2g} cells thick", solid.name, cells)};
   }
-  return any_closed ? CouplingChoice{"flux", "closed solids are rigid, and not thin"}
+  return any_closed ? CouplingChoice{"flux", "closed solids are not thin"}
                     : CouplingChoice{whole, "no solid is closed"};
 }
 

@@ -15,7 +15,7 @@ struct CouplingChoice {
 };
 
 /// The coupling that `Coupling/Type` = "automatic" stands for: "flux", whose errors are of second
-/// order, where each closed solid is rigid, not thin for cells of that size [m] and not far lighter
+/// order, where each closed solid is not thin for cells of that size [m] and not far lighter
 /// than a fluid of that density [kg/m^dim], else "mixed face". Thickness is that of a plate with
 /// the solid's ratio of volume and surface; what is as compact as a ball is no plate. Local; the
 /// same on all ranks.

@@ -11,9 +11,6 @@ namespace lockstep {
 struct Source {
   std::string file;
   std::map<std::string, std::string> places;  // path -> "case.xml, line 14"
-  /// True where ints and doubles were not told apart, as in a dictionary of Python: then `validate`
-  /// makes an int a double where that is declared, and a double that is whole an int.
-  bool mixes_numbers = false;
 
   /// The place of `path`, or of the nearest list around it that has one, or the file.
   std::string place(const std::string& path) const;

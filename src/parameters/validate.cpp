@@ -29,11 +29,6 @@ std::string description(const ParameterEntry& valid) {
   }
 }
 
-bool is_numeric(ValueType type) {
-  return type == ValueType::real || type == ValueType::integer || type == ValueType::reals ||
-         type == ValueType::integers;
-}
-
 /// Lists are validated in place, so that references into the given list stay alive.
 class Validator {
  public:
@@ -47,7 +42,6 @@ class Validator {
         if (!valid_entry)
           throw InputError(unknown_name(source_.place(join_path(path, name)), path, name, valid));
         take_formulas(given, *valid_entry, name, path);
-        take_number(given, *valid_entry, name);
         given.getEntryPtr(name)->setDocString(valid_entry->docString());
         check_entry(entry, *valid_entry, name, path);
       });
@@ -100,20 +94,6 @@ class Validator {
     given.setEntry(name, as_strings(formula));
   }
 
-  /// Gives a number, or an array of them, the declared type if its source does not tell types.
-  void take_number(ParameterList& given, const ParameterEntry& valid,
-                   const std::string& name) const {
-    const ParameterEntry& entry = given.getEntry(name);
-    if (!source_.mixes_numbers || !is_numeric(value_type(entry)) ||
-        !is_numeric(value_type(valid)) || value_type(entry) == value_type(valid))
-      return;
-    try {
-      given.setEntry(name, parse_value(value_type(valid), value_text(entry)));
-    } catch (const InputError&) {
-      return;  // `check_entry` tells of it
-    }
-  }
-
   /// True if formulas stand in place of numbers. Throws InputError for one that cannot be read.
   bool are_formulas(const ParameterEntry& entry, const ParameterEntry& valid,
                     const std::string& name, const std::string& path) const {
@@ -150,10 +130,8 @@ class Validator {
                 violation.empty() || violation.back() == '?' ? "" : ".");
   }
 
-  /// The end of the sentence about a wrong type. A dictionary of Python has no attributes.
+  /// The end of the sentence about a wrong type.
   std::string advice(const ParameterEntry& entry, ValueType wanted) const {
-    if (source_.mixes_numbers)
-      return fmt::format(", and is {}", quoted_value(entry));
     const bool is_integer = final_type(entry) == ValueType::integer && wanted == ValueType::real;
     return fmt::format(": write type=\"{}\"{}", type_name(wanted),
                        is_integer ? fmt::format(" value=\"{}\"", value_text(entry)) : "");

@@ -42,9 +42,9 @@ class Explain(unittest.TestCase):
         self.assertEqual(warnings, [])
 
     def test_the_default_coupling(self):
-        """Fluxes, if all closed solids are rigid and thick; it is said why not."""
+        """Fluxes, if all closed solids are thick; it is said why not."""
         crate, slat = box(.5, .25, .5, .5), box(.5, .06, .5, .2)
-        for solids, coupling in (({"Crate": crate, "Flag": SHEET}, "flux (automatic: closed solids are rigid, and not thin), "),
+        for solids, coupling in (({"Crate": crate, "Flag": SHEET}, "flux (automatic: closed solids are not thin), "),
                                  ({"Crate": crate, "Slat": slat}, 'mixed face (automatic: "Slat" is 0.96 cells thick), ')):
             self.assertIn(coupling, self.explained(solids)[0]["coupling"])
         self.assertNotIn("automatic", self.explained({"Crate": crate}, Coupling={"Type": "flux"})[0]["coupling"])

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _core
 from .names import Named
-from .scene_text import settings_of, xml_of
+from .scene_text import json_of, settings_of
 
 Path = Union[str, bytes, "os.PathLike[str]"]
 Scene = Union[Path, "Mapping[str, Any]"]
@@ -55,7 +55,7 @@ def request_of(scene: Scene) -> _core.OpenRequest:
     """A request for a scene that is a path, a text of XML or a dictionary."""
     request = _core.OpenRequest()
     if isinstance(scene, Mapping):
-        request.scene, request.text, request.from_dictionary = "the dictionary of the scene", xml_of(scene), True
+        request.scene, request.text, request.from_dictionary = "the dictionary of the scene", json_of(scene), True
     elif isinstance(scene, str) and scene.lstrip().startswith("<"):
         request.scene, request.text = "the text of the scene", scene
     else:

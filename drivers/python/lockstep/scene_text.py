@@ -1,15 +1,13 @@
 """Scenes and settings that a script gives as Python's values, as the text that the compiled part reads."""
+import json
 import math
 import numbers
 from collections.abc import Mapping, Sequence
 from typing import Any, List
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from ._core import InputError
-
-FORBIDDEN_IN_ARRAYS = ",{}"  # they part the components of an array
 
 
 def plain(value: Any) -> Any:
@@ -21,87 +19,58 @@ def is_array(value: Any) -> bool:
     return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
 
 
-def is_formula(value: Any) -> bool:
-    return isinstance(value, str) and value.strip().startswith("[") and value.strip().endswith("]")
+def is_formula(text: str) -> bool:
+    return text.strip().startswith("[") and text.strip().endswith("]")
 
 
-def is_int(value: Any) -> bool:
-    """True for whole numbers that an int of a parameter file holds; larger ones are doubles."""
-    return isinstance(value, numbers.Integral) and not isinstance(value, bool) and -2**31 <= value < 2**31
-
-
-def scalar_text(value: Any, where: str) -> str:
-    """A bool, a number or a text as parameter files write it."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
+def scalar(given: Any, where: str) -> Any:
+    """A bool, a text or a finite number, as JSON knows them."""
+    value = plain(given)
+    if isinstance(value, (bool, str)):
         return value
-    if is_int(value):
-        return str(int(value))
-    if isinstance(value, numbers.Real):
-        if not math.isfinite(value):
-            raise InputError(f"{where} is {value}, but must be finite.")
-        return repr(float(value))
-    raise InputError(f"{where} is {value!r}; a parameter is a bool, a number, a text, or a tuple of numbers or texts.")
+    if isinstance(value, numbers.Integral):
+        return int(value)
+    if not isinstance(value, numbers.Real):
+        raise InputError(f"{where} is {value!r}; a parameter is a bool, a number, a text, or a tuple of numbers or texts.")
+    if not math.isfinite(value):
+        raise InputError(f"{where} is {value}, but must be finite.")
+    return float(value)
 
 
-def scalar_type(value: Any) -> str:
-    if is_int(value):
-        return "int"
-    return "bool" if isinstance(value, bool) else "string" if isinstance(value, str) else "double"
+def array(given: Any, where: str) -> List[Any]:
+    """Scalars; a text beside a number or a formula is a formula."""
+    values = [scalar(one, where) for one in given]
+    if all(isinstance(one, str) and not is_formula(one) for one in values):
+        return values
+    return [f"[{one}]" if isinstance(one, str) and not is_formula(one) else one for one in values]
 
 
-def array_type(values: Sequence[Any]) -> str:
-    """The type of an array: texts, or formulas among them where some are numbers or in brackets."""
-    if values and all(isinstance(value, str) and not is_formula(value) for value in values):
-        return "Array(string)"
-    if values and all(map(is_int, values)):
-        return "Array(int)"
-    return "Array(double)"
-
-
-def component_text(value: Any, kind: str, where: str) -> str:
-    text = scalar_text(value, where)
-    if not isinstance(value, str):
-        return text
-    if kind == "Array(double)":  # beside numbers a text is a formula
-        return text if is_formula(text) else f"[{text}]"
-    if any(mark in text for mark in FORBIDDEN_IN_ARRAYS[1:]) or ("," in text and "(" not in text) or text != text.strip():
-        raise InputError(f"{where} has the text {text!r}; in a tuple texts have no commas, braces and blanks at their ends.")
-    return text
-
-
-def parameter(name: str, value: Any, where: str) -> str:
-    if is_array(value):
-        values = [plain(one) for one in value]
-        kind = array_type(values)
-        text = "{" + ", ".join(component_text(one, kind, where) for one in values) + "}"
-    else:
-        kind = "double" if is_formula(value) else scalar_type(value)
-        text = scalar_text(value, where)
-    return f"<Parameter name={quoteattr(name)} type={quoteattr(kind)} value={quoteattr(text)}/>"
-
-
-def xml_of(content: "Mapping[str, Any]", name: str = "Scene", path: str = "") -> str:
-    """Nested dictionaries as XML: a dictionary is a list, a tuple or list an array. Raises InputError."""
-    lines = [f"<ParameterList name={quoteattr(name)}>"]
-    for key, given in content.items():
+def parameters(given: "Mapping[str, Any]", path: str) -> "dict[str, Any]":
+    content = {}
+    for key, one in given.items():
         if not isinstance(key, str):
             raise InputError(f"the dictionary of the scene: in \"{path}\", the name {key!r} is no text.")
-        value, here = plain(given), f"{path}/{key}" if path else key
+        value, here = plain(one), f"{path}/{key}" if path else key
+        where = f'the dictionary of the scene: "{here}"'
         if isinstance(value, Mapping):
-            lines.append(xml_of(value, key, here))
+            content[key] = parameters(value, here)
         else:
-            lines.append(parameter(key, value, f'the dictionary of the scene: "{here}"'))
-    return "\n".join([*lines, "</ParameterList>"])
+            content[key] = array(value, where) if is_array(value) else scalar(value, where)
+    return content
+
+
+def json_of(scene: "Mapping[str, Any]") -> str:
+    """Nested dictionaries as JSON, which is YAML: a dictionary is a list, a tuple or list an array. Raises InputError."""
+    return json.dumps(parameters(scene, ""), ensure_ascii=False)
 
 
 def setting_text(given: Any, where: str) -> str:
     """The value as `simulate --set` would write it."""
     value = plain(given)
     if is_array(value):
-        return "{" + ", ".join(scalar_text(plain(one), where) for one in value) + "}"
-    return scalar_text(value, where)
+        return "{" + ", ".join(setting_text(one, where) for one in value) + "}"
+    value = scalar(value, where)
+    return value if isinstance(value, str) else json.dumps(value)
 
 
 def settings_of(given: "Mapping[str, Any]", path: str = "") -> List[str]:

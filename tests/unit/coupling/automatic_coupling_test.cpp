@@ -10,18 +10,17 @@ namespace {
 
 template <int dim>
 CouplingChoice choice(const SurfaceMesh<dim>& mesh, double spacing, bool closed = true,
-                      bool rigid = true, double density = 2) {
+                      double density = 2) {
   SolidDescription solid;
   solid.name = "Body";
   solid.closed = closed;
-  solid.rigid = rigid;
   solid.density = density;
   solid.simplex_end = static_cast<int>(mesh.simplices.size());
   solid.vertex_end = static_cast<int>(mesh.vertices.size());
   return automatic_coupling(SurfaceSnapshot<dim>(mesh, {solid}), spacing, 1000);
 }
 
-TEST(AutomaticCoupling, TakesFluxesForThickRigidSolids) {
+TEST(AutomaticCoupling, TakesFluxesForThickSolids) {
   EXPECT_EQ(choice(ball_surface<2>(1, 0.1), 0.9).type, "flux");
   EXPECT_EQ(choice(ball_surface<3>(1, 0.1), 0.9).type, "flux");
   EXPECT_EQ(choice(box_surface<3>({2, 2, 2}, 1), 0.9).type, "flux");
@@ -29,16 +28,15 @@ TEST(AutomaticCoupling, TakesFluxesForThickRigidSolids) {
 }
 
 TEST(AutomaticCoupling, TakesWholeFacesForBodiesWithNextToNoMass) {
-  EXPECT_EQ(choice(ball_surface<2>(1, 0.1), 0.5, true, true, 0.01).reason,
+  EXPECT_EQ(choice(ball_surface<2>(1, 0.1), 0.5, true, 0.01).reason,
             "\"Body\" is 1e-05 times as dense as the fluid");
 }
 
-TEST(AutomaticCoupling, TakesWholeFacesForThinAndSoftSolids) {
+TEST(AutomaticCoupling, TakesWholeFacesForThinSolids) {
   EXPECT_EQ(choice(ball_surface<2>(1, 0.1), 1.1).type, "mixed face");
   const CouplingChoice plate = choice(box_surface<3>({40, 40, 1}, 5), 1.0);
   EXPECT_EQ(plate.type, "mixed face");
   EXPECT_EQ(plate.reason, "\"Body\" is 1 cells thick");
-  EXPECT_EQ(choice(ball_surface<3>(1, 0.1), 0.1, true, false).reason, "\"Body\" deforms");
 }
 
 /// Two thirds of a cup are hollow: two boxes, one inside the other and turned inside out.

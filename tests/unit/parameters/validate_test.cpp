@@ -192,35 +192,6 @@ TEST(Validate, TypeChoosesTheSchema) {
             "only: write <ParameterList name=\"Radius\">.");
 }
 
-TEST(Validate, NumbersOfASourceWithoutTypesTakeTheDeclaredOne) {
-  Document document = read_xml_string(R"xml(<ParameterList>
-<ParameterList name="Fluid"><Parameter name="Density" type="int" value="998"/>
-<Parameter name="Gravity" type="Array(int)" value="{0, -10}"/>
-<Parameter name="Steps" type="double" value="3"/></ParameterList>
-<ParameterList name="Solver"><Parameter name="Anything" type="int" value="1"/></ParameterList>
-</ParameterList>)xml",
-                                      "the dictionary");
-  document.source.mixes_numbers = true;
-  Document other = document;
-  other.list.sublist("Fluid").set("Steps", 2.5);
-  other.list.sublist("Fluid").set("Density", "heavy");
-
-  validate(document, scene_schema());
-
-  const ParameterList& fluid = document.list.sublist("Fluid");
-  EXPECT_EQ(fluid.get<double>("Density"), 998);
-  EXPECT_EQ(fluid.get<ParameterArray<double>>("Gravity")[1], -10);
-  EXPECT_EQ(fluid.get<int>("Steps"), 3);
-  EXPECT_EQ(document.list.sublist("Solver").get<int>("Anything"), 1);
-  other.source.places.clear();
-  EXPECT_EQ(input_error([&] { validate(other, scene_schema()); }),
-            "There are 2 mistakes:\n"
-            "1. the dictionary: in \"Fluid\", \"Density\" has type \"string\", but needs "
-            "\"double\", and is \"heavy\".\n"
-            "2. the dictionary: in \"Fluid\", \"Steps\" has type \"double\", but needs \"int\", "
-            "and is 2.5.");
-}
-
 TEST(Declare, RefusesWhatCouldNotBeNamedOrWritten) {
   ParameterList list;
   declare(list, "A", 1, "First.");
