@@ -32,12 +32,13 @@ void declare_time(ParameterList& scene, bool has_joints) {
         "step, but those of a mechanism that is by itself: without fluid, flesh, control, limits, "
         "contact in that step, or prescribed solids.");
   declare_between(
-      time, "Order in Time", 1, 1, 2,
+      time, "Order in Time", 0, 0, 2,
       "Of the scheme that moves solids and fluid together. 1: the paper's, bodies move by a solve "
       "that is thrown away. 2: both solves of a step are kept, half of the forces act before the "
       "bodies move and half after (kick, drift, kick): floating and falling rigid bodies lose none "
       "of their motion to the step; no joints, soft solids or trapped gas. Advection then is of "
-      "second order, too, whatever that of \"Fluid\" says. Where nothing is free to move, 1.");
+      "second order, too, whatever that of \"Fluid\" says. Where nothing is free to move, 1. "
+      "0: 2 where it can be had, else 1.");
   declare_choice(
       time, "Pressure Correction", "rotational", {"rotational", "incremental", "non-incremental"},
       "Pressure of the last step in the viscous solve. rotational: with the correction by "

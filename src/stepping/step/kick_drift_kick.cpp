@@ -10,32 +10,14 @@
 //   4  kick   as 1, at x^{n+1}: u^{n+1}, V^{n+1}
 #include "stepping/step/kick_drift_kick.hpp"
 
+#include <fmt/format.h>
+
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
-
-#include "base/errors.hpp"
 
 namespace lockstep {
 
 namespace {
-
-/// The step is of second order for what is moved by the velocities of the coupled solve alone.
-template <int dim>
-void check_solids(const Components<dim>& components) {
-  constexpr auto remedy = "set \"Time/Order in Time\" to 1, or leave it out.";
-  const auto& solids = components.solids->solids();
-  const auto deforms = [](const SolidDescription& solid) {
-    return !solid.rigid && !solid.prescribed;
-  };
-  const auto soft = std::find_if(solids.begin(), solids.end(), deforms);
-  check_input(soft == solids.end(),
-              "\"{}\" deforms, but the second order in time is one of rigid bodies; {}",
-              soft == solids.end() ? "" : soft->name, remedy);
-  check_input(!components.solids->joints(),
-              "The second order in time knows no joints, which have one of their own; {}", remedy);
-  check_input(!components.fluid->gas(), "The second order in time knows no trapped gas; {}",
-              remedy);
-}
 
 /// Adds the impulses of the first kick to the ledger of the second, as if the drift came before
 /// both.
@@ -108,9 +90,15 @@ StageResults<dim> kick(StepParts<dim>& parts, const StepContext<dim>& context) {
 }  // namespace
 
 template <int dim>
-void begin_kick_drift_kick(Components<dim>& components) {
-  check_solids(components);
-  components.fluid->leave_order_to_scheme();
+std::string hindrance_to_kick_drift_kick(const Components<dim>& components) {
+  for (const SolidDescription& solid : components.solids->solids()) {
+    if (!solid.rigid && !solid.prescribed)
+      return fmt::format("\"{}\" deforms, but the second order in time is one of rigid bodies",
+                         solid.name);
+  }
+  if (components.solids->joints())
+    return "The second order in time knows no joints, which have one of their own";
+  return components.fluid->gas() ? "The second order in time knows no trapped gas" : "";
 }
 
 template <int dim>
@@ -155,8 +143,8 @@ StepReport<dim> kick_drift_kick(StepParts<dim>& parts, const StepTime& step,
   });
 }
 
-template void begin_kick_drift_kick(Components<2>&);
-template void begin_kick_drift_kick(Components<3>&);
+template std::string hindrance_to_kick_drift_kick(const Components<2>&);
+template std::string hindrance_to_kick_drift_kick(const Components<3>&);
 template StepReport<2> kick_drift_kick(StepParts<2>&, const StepTime&, const StageRunner&);
 template StepReport<3> kick_drift_kick(StepParts<3>&, const StepTime&, const StageRunner&);
 

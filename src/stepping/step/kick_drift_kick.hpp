@@ -1,12 +1,14 @@
 #pragma once
+#include <string>
+
 #include "stepping/step/time_scheme.hpp"
 
 namespace lockstep {
 
-/// Prepares a scene for steps of `kick_drift_kick`. Throws InputError for deforming solids, joints
-/// and trapped gas. Local.
+/// Says what keeps a scene from steps of `kick_drift_kick`, a sentence without its end: deforming
+/// solids, joints or trapped gas. Empty: nothing. Local.
 template <int dim>
-void begin_kick_drift_kick(Components<dim>& components);
+std::string hindrance_to_kick_drift_kick(const Components<dim>& components);
 
 /// A step of second order for rigid solids and the fluid around them: both of the coupled solves
 /// are kept, each half of the step's forces where the bodies then are. The same solves as those of

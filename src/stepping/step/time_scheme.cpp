@@ -1,5 +1,6 @@
 #include "stepping/step/time_scheme.hpp"
 
+#include "base/errors.hpp"
 #include "stepping/step/kick_drift_kick.hpp"
 #include "stepping/step/paper_step.hpp"
 
@@ -48,14 +49,27 @@ StepReport<dim> StepParts<dim>::finish(const StepContext<dim>& context,
   return report;
 }
 
+namespace {
+/// True if steps are to be of second order. Throws InputError if they cannot, but are asked to.
+template <int dim>
+bool takes_second_order(const Components<dim>& components, int order) {
+  if (order == 1 || !components.solids->has_unknowns())
+    return false;
+  const std::string hindrance = hindrance_to_kick_drift_kick(components);
+  check_input(order != 2 || hindrance.empty(),
+              "{}; set \"Time/Order in Time\" to 1, or leave it out.", hindrance);
+  return hindrance.empty();
+}
+}  // namespace
+
 template <int dim>
 TimeScheme<dim>::TimeScheme(Components<dim>& components, const StepOptions& options,
                             double start_time, StageTimers& timers)
     : parts_(components, options, start_time, timers),
-      is_of_second_order_(options.order == 2 && components.solids->has_unknowns()),
+      is_of_second_order_(takes_second_order(components, options.order)),
       time_(start_time) {
   if (is_of_second_order_)
-    begin_kick_drift_kick(components);
+    components.fluid->leave_order_to_scheme();
 }
 
 template <int dim>

@@ -7,7 +7,8 @@
 namespace lockstep {
 
 struct StepOptions {
-  int order = 1;              ///< order in time: 1 is `paper_step`, 2 `kick_drift_kick`
+  /// Order in time: 1 is `paper_step`, 2 `kick_drift_kick`, 0 that where it can be had.
+  int order = 1;
   CoupledSolveOptions solve;  ///< its tolerance is that of F2, too
   PredictionOptions prediction;
   bool energy_budget = false;  ///< reports have it
