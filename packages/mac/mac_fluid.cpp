@@ -140,7 +140,7 @@ bool MacFluid<dim>::begin_step(double time, double dt, const std::function<doubl
     flow_.time = time;
     flow_.set_prescribed(flow_.time, flow_.velocity);
   }
-  flow_.parameters.forces.set_time(time + dt - dt / 2);  // to the bit as after a restart
+  flow_.parameters.forces.set_time(time + dt / 2);
   return tiles_.begin_step(time, dt, solid_speed);
 }
 

@@ -40,7 +40,7 @@ def with_all(scene, more):
 
 TANK = {"Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (1., 1.), "Cells": (16, 16)},
         "Fluid": {"Density": 1000., "Gravity": (0., -9.8), "Velocity": ("sin(2*_pi*x)*cos(2*_pi*y)", "-cos(2*_pi*x)*sin(2*_pi*y)"), "Order in Time": 1},
-        "Contact": {"Type": "none"}, "Time": {"End": 1., "Fixed Step": .01}}
+        "Contact": {"Type": "none"}, "Time": {"End": 1., "Fixed Step": .01, "Order in Time": 1}}  # solids keep their step where joints are added
 SURFACE = {"Fluid": {"Free Surface": {"Interface": {"Type": "level set"}, "Liquid": {"Water": {"Type": "level", "Height": .53}}}}}
 DISCS = with_all(TANK, {"Solids": {"A": disc(.3), "B": disc(.7)}})
 WATER = with_all(TANK, SURFACE)

@@ -10,6 +10,7 @@ template <int dim>
 struct ForceParameters {
   Point<dim> gravity = Point<dim>::Zero();  ///< g in the middle of the present step [m/s^2]
   FieldFormula<dim> gravity_law;            ///< formulas of the time that `gravity` comes from
+  double gravity_time = 0;                  ///< the time of `gravity` [s]
   Point<dim> body = Point<dim>::Zero();     ///< any other uniform acceleration [m/s^2]
   FieldFormula<dim> damping;                ///< rate at which the velocity decays [1/s]
   double expansion = 0;                     ///< Boussinesq, beta [1/K]
@@ -18,6 +19,7 @@ struct ForceParameters {
 
   /// Takes the gravity of that time. Local.
   void set_time(double time) {
+    gravity_time = time;
     if (!gravity_law.are_numbers())
       gravity = gravity_law.vector(Point<dim>::Zero(), time);
   }

@@ -116,6 +116,7 @@ void MacFlow<dim>::save(CheckpointWriter& checkpoint) const {
   save_fields(domain, {{"cells_with_pressure", {&cells}}}, checkpoint);
   checkpoint.file().write_attribute("fluid", "boundary_time", time);
   checkpoint.file().write_attribute("fluid", "last_step", last_step);
+  checkpoint.file().write_attribute("fluid", "gravity_time", parameters.forces.gravity_time);
   if (liquid)
     liquid->interface().save(checkpoint);
 }
@@ -158,7 +159,7 @@ void MacFlow<dim>::load(const CheckpointReader& checkpoint) {
   time = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step = checkpoint.file().read_attribute<double>("fluid", "last_step");
   accepted_step = last_step;
-  parameters.forces.set_time(time - last_step / 2);
+  parameters.forces.set_time(checkpoint.file().read_attribute<double>("fluid", "gravity_time"));
   accepted_acceleration = parameters.forces.uniform();
   if (liquid)
     liquid->load(checkpoint);

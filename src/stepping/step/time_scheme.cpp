@@ -26,9 +26,13 @@ StepParts<dim>::StepParts(Components<dim>& plug_ins, const StepOptions& options,
 
 template <int dim>
 bool StepParts<dim>::begin(const StepTime& step) {
+  const Point<dim> last_gravity = components.fluid->gravity();
   const bool has_moved = transport.make_room(step);
-  components.solids->set_gravity(components.fluid->gravity());
-  if (components.solids->begin_step(step.begin, step.dt)) {  // other dofs are unknowns now
+  const Point<dim> gravity = components.fluid->gravity();
+  components.solids->set_gravity(gravity);
+  const bool has_other_unknowns = components.solids->begin_step(step.begin, step.dt);
+  const bool has_other_loads = components.solids->has_unknowns() && gravity != last_gravity;
+  if (has_other_unknowns || has_other_loads) {  // hydrostatic forces are frozen, too
     transport.freeze();
     audit.start(step.begin);
   }
