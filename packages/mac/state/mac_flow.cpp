@@ -159,7 +159,9 @@ void MacFlow<dim>::load(const CheckpointReader& checkpoint) {
   time = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step = checkpoint.file().read_attribute<double>("fluid", "last_step");
   accepted_step = last_step;
-  parameters.forces.set_time(checkpoint.file().read_attribute<double>("fluid", "gravity_time"));
+  const auto gravity_time = checkpoint.file().read_attribute<double>("fluid", "gravity_time");
+  checkpoint.check(std::isfinite(gravity_time), "the time of its gravity cannot be");
+  parameters.forces.set_time(gravity_time);
   accepted_acceleration = parameters.forces.uniform();
   if (liquid)
     liquid->load(checkpoint);
