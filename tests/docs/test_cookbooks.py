@@ -1,0 +1,80 @@
+"""Types the commands of docs/cookbooks as their pages show them, and holds what they print to what the pages say.
+
+Usage: test_cookbooks.py ROOT BUILD_FOLDER
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT, BUILD = (Path(argument).resolve() for argument in sys.argv[1:3])
+del sys.argv[1:]
+BOOKS = ROOT / "docs" / "cookbooks"
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def commands(page):
+    return "".join(re.findall(r"```sh\n(.*?)```", (BOOKS / page).read_text(), re.DOTALL))
+
+
+def is_near(text, stated):
+    """Within a tenth, or one and a half of the last digit that is stated; of round-off and residuals within their decade."""
+    value, expected = float(text), float(stated)
+    if abs(expected) < 1e-6:
+        return abs(value) <= 10 * abs(expected)
+    digits = len(stated.partition(".")[2]) if "e" not in stated else 0
+    return abs(value - expected) <= max(.1 * abs(expected), 1.5 * 10.0 ** -digits)
+
+
+class Cookbooks(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        shutil.copytree(BOOKS, self.folder / "docs" / "cookbooks", ignore=shutil.ignore_patterns("*.png", "__pycache__"))
+        (self.folder / "build").mkdir()
+        (self.folder / "build" / "release").symlink_to(BUILD)
+        for name in ("tools", "tests", "xml-params"):
+            (self.folder / name).symlink_to(ROOT / name)
+
+    def cook(self, name):
+        """Types the commands of a page, which must print what it says and draw its figure; returns what they print."""
+        environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+        result = subprocess.run(["bash", "-e", "-c", commands("README.md") + commands(f"{name}.md")], cwd=self.folder, text=True,
+                                env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=280)
+        self.assertEqual(result.returncode, 0, result.stdout[-4000:])
+        self.compare(name, result.stdout.splitlines())
+        for picture in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", (BOOKS / f"{name}.md").read_text()):
+            self.assertTrue((self.folder / "output" / picture).exists(), picture)
+        return result.stdout
+
+    def compare(self, name, printed):
+        stated = "".join(re.findall(r"```\n(.*?)```\n", re.sub(r"```\w+\n.*?```\n", "", (BOOKS / f"{name}.md").read_text(), flags=re.DOTALL),
+                                    re.DOTALL)).splitlines()
+        self.assertGreater(len(stated), 1)
+        words = {NUMBER.sub("#", line): line for line in printed if line.strip()}
+        for line in stated:
+            key = NUMBER.sub("#", line)
+            with self.subTest(page=name, line=line):
+                self.assertIn(key, words, "\n".join(printed[-40:]))
+                for value, expected in zip(NUMBER.findall(words[key]), NUMBER.findall(line)):
+                    self.assertTrue(is_near(value, expected), words[key])
+
+    def numbers(self, printed, pattern):
+        """The numbers of a line, by a pattern in which # stands for each."""
+        match = re.search(pattern.replace("#", f"({NUMBER.pattern})"), printed)
+        self.assertTrue(match, printed)
+        return [float(text) for text in match.groups()]
+
+    def test_floating_body(self):
+        printed = self.cook("floating-body")
+        self.assertLess(self.numbers(printed, "difference # %")[0], 2)
+        self.assertLess(self.numbers(printed, "R: # % off")[0], .6)
+
+
+if __name__ == "__main__":
+    unittest.main()
