@@ -2,6 +2,7 @@
 
 Usage: test_cookbooks.py ROOT BUILD_FOLDER
 """
+import csv
 import os
 import re
 import shutil
@@ -12,7 +13,7 @@ import unittest
 from pathlib import Path
 
 ROOT, BUILD = (Path(argument).resolve() for argument in sys.argv[1:3])
-del sys.argv[1:]
+del sys.argv[1:3]
 BOOKS = ROOT / "docs" / "cookbooks"
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
@@ -74,6 +75,32 @@ class Cookbooks(unittest.TestCase):
         printed = self.cook("floating-body")
         self.assertLess(self.numbers(printed, "difference # %")[0], 2)
         self.assertLess(self.numbers(printed, "R: # % off")[0], .6)
+
+    @unittest.skipUnless((BUILD / "drivers" / "python" / "lockstep").is_dir(), "the Python package is not built")
+    def test_cloth_in_stream(self):
+        printed = self.cook("cloth-in-stream")
+        force, apart = self.numbers(printed, "force # N/m, .*: # % apart")
+        self.assertLess(abs(force - 242), 6)
+        self.assertLess(apart, 2)
+        self.assertLess(self.numbers(printed, "sag .*: # % apart")[0], 2)
+
+    def test_added_mass(self):
+        printed = self.cook("added-mass")
+        off, order = self.numbers(printed, "flux: .* # % off .* order #")
+        self.assertLess(off, .06)
+        self.assertGreater(order, 1.5)
+        off, order = self.numbers(printed, "mixed face: .* # % off .* order #")
+        self.assertLess(off, 6)
+        self.assertLess(abs(order - 1), .15)
+        with (self.folder / "output" / "added-mass" / "study" / "table.csv").open() as file:
+            rows = {(row["series"], int(row["cells"])): row for row in csv.DictReader(line for line in file if not line.startswith("#"))}
+        stated = re.findall(r"^\| ([a-z ]+) \| (\d+) \| ([^|]+) \| [^|]+ \| ([^|]+) \|", (BOOKS / "added-mass.md").read_text(), re.MULTILINE)
+        self.assertEqual(len(stated), len(rows))
+        for series, n, value, error in stated:
+            with self.subTest(series=series, n=n):
+                row = rows[series, int(n) ** 2]
+                self.assertLess(abs(float(row["value"]) - float(value)), 1e-3)
+                self.assertLess(abs(float(row["error"]) / float(error) - 1), .1)
 
 
 if __name__ == "__main__":

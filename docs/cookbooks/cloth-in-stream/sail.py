@@ -4,7 +4,7 @@ import numpy as np
 from plot_style import outputs_of, panels, save
 from scipy.optimize import brentq
 
-DENSITY, SPAN, LENGTH = 1000, .4, .48
+DENSITY, SPAN, LENGTH = 1000, .375, .45
 y = np.linspace(-.5, .5, 129)
 
 
