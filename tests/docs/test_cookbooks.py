@@ -102,6 +102,15 @@ class Cookbooks(unittest.TestCase):
                 self.assertLess(abs(float(row["value"]) - float(value)), 1e-3)
                 self.assertLess(abs(float(row["error"]) / float(error) - 1), .1)
 
+    def test_own_preconditioner(self):
+        printed = self.cook("own-preconditioner")
+        of_system = {name: self.numbers(printed, f"\n{name}: # iterations, # from") for name in ("schur-cg", "gauss-seidel", "triangle")}
+        self.assertLess(3 * of_system["triangle"][0], of_system["gauss-seidel"][0])
+        self.assertLess(max(error for _, error in of_system.values()), 5e-9)
+        of_run = {name: self.numbers(printed, f"{name}, the run: # iterations")[0] for name in of_system}
+        self.assertLess(4 * of_run["triangle"], min(of_run["schur-cg"], of_run["gauss-seidel"]))
+        self.assertLess(self.numbers(printed, "at most # m apart")[0], 1e-9)
+
 
 if __name__ == "__main__":
     unittest.main()
