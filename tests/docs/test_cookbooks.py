@@ -111,6 +111,19 @@ class Cookbooks(unittest.TestCase):
         self.assertLess(4 * of_run["triangle"], min(of_run["schur-cg"], of_run["gauss-seidel"]))
         self.assertLess(self.numbers(printed, "at most # m apart")[0], 1e-9)
 
+    def test_own_material(self):
+        printed = self.cook("own-material")
+        stress = {}
+        for run in ("stiffening", "plain"):
+            stress[run], law, apart = self.numbers(printed, f"{run}: .* # kPa, the law's # kPa; at most # % of that apart")
+            self.assertLess(abs(stress[run] / law - 1), .002)
+            self.assertLess(apart, .2)
+        self.assertGreater(stress["stiffening"], 3 * stress["plain"])
+
+    def test_every_page_is_tested(self):
+        pages = {page.stem for page in BOOKS.glob("*.md")} - {"README"}
+        self.assertEqual({f"test_{page.replace('-', '_')}" for page in pages} - set(dir(self)), set())
+
 
 if __name__ == "__main__":
     unittest.main()
