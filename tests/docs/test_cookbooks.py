@@ -18,8 +18,13 @@ BOOKS = ROOT / "docs" / "cookbooks"
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
+def blocks(page, language):
+    """The blocks of code of a page in this language; "" has what commands print."""
+    return [code for found, code in re.findall(r"```(\w*)\n(.*?)```\n", (BOOKS / page).read_text(), re.DOTALL) if found == language]
+
+
 def commands(page):
-    return "".join(re.findall(r"```sh\n(.*?)```", (BOOKS / page).read_text(), re.DOTALL))
+    return "".join(blocks(page, "sh"))
 
 
 def is_near(text, stated):
@@ -54,8 +59,7 @@ class Cookbooks(unittest.TestCase):
         return result.stdout
 
     def compare(self, name, printed):
-        stated = "".join(re.findall(r"```\n(.*?)```\n", re.sub(r"```\w+\n.*?```\n", "", (BOOKS / f"{name}.md").read_text(), flags=re.DOTALL),
-                                    re.DOTALL)).splitlines()
+        stated = "".join(blocks(f"{name}.md", "")).splitlines()
         self.assertGreater(len(stated), 1)
         words = {NUMBER.sub("#", line): line for line in printed if line.strip()}
         for line in stated:
