@@ -28,7 +28,7 @@ NOT_ON_GITHUB = re.compile(r"\\[^\w\s]|[^\w]_|\*|\\(?:operatorname|mbox|phantom)
 PATH = re.compile(r"`((?:src|packages|drivers|tests|docs|tools|template|cmake|xml-params)/[\w./*-]+)(?:: ([\w:~]+))?[^`]*`")
 
 NAME = re.compile(r"`([\w-]+\.(?:cpp|hpp|py|js|cmake))(?:: ([\w:~]+))?`")
-ROOMS = ("src", "packages", "drivers", "tests", "tools", "template", "cmake")
+ROOMS = ("src", "packages", "drivers", "tests", "tools", "template", "cmake", "docs")
 
 
 def pages():
