@@ -6,7 +6,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
-from simulation import attempt, column, histories, simulate, table  # noqa: E402
+from simulation import column, histories, simulate, table  # noqa: E402
 
 COUPLINGS = ("mixed face", "flux")
 PERIODIC_X = {"x lower": {"Type": "periodic"}, "x upper": {"Type": "periodic"}}
@@ -50,7 +50,7 @@ class GoingRound(unittest.TestCase):
 
     def states(self, dim, coupling, x, z=.5, steps=12, ranks=1, names=None, **more):
         position = (x, .27, z)[:dim]
-        _, bodies = histories(scene(dim, {"Ball": ball(position)}, coupling, cells=32 if dim == 2 else 20, **more),
+        _, bodies = histories(scene(dim, {"Ball": ball(position)}, coupling, cells=32 if dim == 2 else 24, **more),
                               "--steps", steps, ranks=ranks)
         return columns_of(bodies, names or (("vx", "vy", "wz", "y") if dim == 2 else ("vx", "vy", "vz", "wz", "y")))
 
@@ -109,7 +109,7 @@ class GoingRound(unittest.TestCase):
                 solids = {"Ball": ball((seam - .2, *at), density=5., Velocity=(1.,) + (0.,) * (dim - 1), Restitution=.8),
                           "Other": ball((seam + .2 + (2. if seam == 1. else 0.), *at), density=9.,
                                         Velocity=(-1.,) + (0.,) * (dim - 1), Restitution=.8)}
-                _, bodies = histories(scene(dim, solids, "flux", cells=32 if dim == 2 else 20, speed=0., gravity=(0.,) * 3,
+                _, bodies = histories(scene(dim, solids, "flux", cells=32 if dim == 2 else 24, speed=0., gravity=(0.,) * 3,
                                             more={"Contact": {"Type": "gauss seidel"}}), "--steps", 14 if dim == 2 else 9)
                 found.append([v for body in ("Ball", "Other") for v in columns_of(bodies, ("vx", "vy", "y"), body)])
             self.assertLess(found[0][0][-1], 0)  # it bounced
@@ -121,13 +121,13 @@ class GoingRound(unittest.TestCase):
         """Along x it is held by a fixed body on the other side."""
         found = []
         for seam in (.5, 1.):
-            solids = {"Stop": ball((seam + .18, .25), density=0, Motion={"Type": "static"}),
+            solids = {"Stop": ball(((seam + .18) % 1, .25), density=0, Motion={"Type": "static"}),
                       "Ball": ball((seam - .1, .25), Locked=("y", "rotation"))}
             _, bodies = histories(scene(2, solids, "flux", speed=0., gravity=(2., 0.), Viscosity=.1,
-                                        more={"Contact": {"Type": "gauss seidel"}}), "--steps", 30)
+                                        more={"Contact": {"Type": "gauss seidel"}}), "--steps", 40)
             found.append([[at - seam for at in column(bodies_of(bodies), "x")], column(bodies_of(bodies), "vx")])
         self.assert_same(found[0], found[1], 1e-5)
-        self.assertLess(abs(found[1][1][-1]), .02)
+        self.assertLess(abs(found[1][1][-1]), 1e-3)
 
     def test_a_restart_goes_on_at_the_seam(self):
         for ranks in (1, 2):
@@ -140,15 +140,6 @@ class GoingRound(unittest.TestCase):
                 simulate(folder / "scene.xml", folder / "whole", "--steps", 8, "--restart",
                          folder / "whole/checkpoint-000004.h5", ranks=ranks)
                 self.assertEqual(whole, table(folder / "whole/bodies.csv"))
-
-    def test_what_is_too_long_is_told(self):
-        with tempfile.TemporaryDirectory() as name:
-            file = Path(name) / "scene.xml"
-            log = Path(name) / "{}"
-            for radius, told in ((.1, False), (.4, True)):
-                solids = {"Ball": {**ball((.5, .25)), "Geometry": {"Shape": "box", "Size": (2 * radius, .1)}}}
-                file.write_text(scene(2, solids, "flux"))
-                self.assertEqual("periodic along" in attempt(file, log, "--explain").stdout, told)
 
 
 def bodies_of(bodies, body="Ball"):
