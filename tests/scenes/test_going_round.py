@@ -75,6 +75,23 @@ class GoingRound(unittest.TestCase):
                 middle = self.states(2, coupling, .5, gravity=(1., -.5))
                 self.assert_same(middle, self.states(2, coupling, 1., gravity=(1., -.5)), 1e-6)
 
+    def test_bodies_float_across_the_seam(self):
+        """A disc falls into a pool and goes along; liquid as fractions has no random particles."""
+        sides = {**PERIODIC_X, "y lower": {"Type": "wall"}, "y upper": {"Type": "open"}}
+        pool = {"Interface": {"Type": "volume of fluid"}, "Liquid": {"Pool": {"Type": "level", "Height": .5}}}
+        for coupling in COUPLINGS:
+            found = []
+            for x in (.5, 1.):
+                text = xml("Scene", {
+                    "Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (1., 1.), "Cells": (32, 32), "Sides": sides},
+                    "Fluid": {"Density": 1000., "Gravity": (0., -9.81), "Free Surface": pool},
+                    "Solids": {"Ball": ball((x, .55), density=500., Velocity=(.5, 0.))}, "Coupling": {"Type": coupling},
+                    "Solver": {"Tolerance": 1e-11}, "Output": {"Frames": False}, "Time": {"End": 100., "Fixed Step": .01}})
+                history, bodies = histories(text, "--steps", 8)
+                found.append([*columns_of(bodies, ("vx", "vy", "wz", "y")), column(history, "liquid_volume")])
+            with self.subTest(coupling=coupling):
+                self.assert_same(found[0], found[1], 1e-6)
+
     def test_a_body_in_a_stream_keeps_going(self):
         """It and the fluid move alike: forever."""
         for coupling in COUPLINGS:
