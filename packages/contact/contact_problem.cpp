@@ -206,7 +206,7 @@ template <int dim>
 bool ContactProblem<dim>::is_apart(const Contact<dim>& contact) const {
   if (contact.other < 0)
     return false;
-  return apart_.count({contact.solid, contact.other}) > 0 ||
+  return apart_.count({shapes_.source(contact.solid), shapes_.source(contact.other)}) > 0 ||
          shapes_.hangs_on(contact.point, contact.other) ||
          shapes_.hangs_on(contact.other_point, contact.solid);
 }

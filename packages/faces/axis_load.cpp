@@ -34,7 +34,9 @@ void add_load(const AxisLoad<dim>& load, const SolidSystem<dim>& solids,
   const Point<dim> unit = dt * Point<dim>::Unit(load.axis);
   if (solid.rigid) {
     const SurfacePoint<dim> point = middle<dim>(surface, solid.simplex_begin);
-    const double length = surface.bounds_of_solid(load.solid).diagonal().norm();
+    // Rows are those of the nearest image: an arm stays well within half a period.
+    const double length = surface.own_bounds(load.solid).diagonal().norm() *
+                          (surface.images().repeats(load.solid) ? 0.25 : 1);
     const double strength = load.moment.norm() / length;
     add_impulse<dim>(solids, point, load.center, load.force * unit, momentum);
     if (strength > 0) {  // a couple: rows of a rigid body are linear in x

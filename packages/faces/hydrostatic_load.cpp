@@ -37,9 +37,10 @@ HydrostaticLoads<dim>::HydrostaticLoads(const FluidDiscretization<dim>& fluid,
 template <int dim>
 void HydrostaticLoads<dim>::set_rest(int solid, const Box<dim>& bounds, const WaterLevel* level) {
   const Point<dim> up = -gravity_.normalized();
-  PartOfSolid<dim> whole{0, surface_.bounds_of_solid(solid).center()};
+  PartOfSolid<dim> whole{0, surface_.own_bounds(solid).center()};
+  const Box<dim> room = surface_.room_of(solid, bounds);
   if (surface_.solids()[solid].closed)
-    whole = part_of_solid<dim>(surface_, solid, bounds);
+    whole = part_of_solid<dim>(surface_, solid, room);
   RestPressure<dim>& pressure = pressures_[solid];
   if (!level || !level->known) {  // one fluid fills the domain
     const double density = level && !level->is_wet ? gas_density_ : density_;
@@ -51,7 +52,7 @@ void HydrostaticLoads<dim>::set_rest(int solid, const Box<dim>& bounds, const Wa
   const bool is_below = level->is_wet && !level->pierces;
   const bool is_parted = surface_.solids()[solid].closed && !is_below;
   const PartOfSolid<dim> below =
-      is_parted ? part_below<dim>(surface_, solid, bounds, up, level->height) : whole;
+      is_parted ? part_below<dim>(surface_, solid, room, up, level->height) : whole;
   pressure.gradient = density_ * gravity_;
   pressure.origin = level->height * up;
   if (level->pierces || gas_density_ > 0)
@@ -72,14 +73,15 @@ void HydrostaticLoads<dim>::add_closed(const ControlVolume<dim>& volume, int sol
   const RestPressure<dim>& pressure = pressures_[solid];
   Sum& sum = sums_[solid][axis];
   sum.area += area;
-  Point<dim> arm = center - centers_[solid];
+  const Point<dim> shift = surface_.beside(solid, center) - center;
+  Point<dim> arm = center + shift - centers_[solid];
   arm[axis] = 0;
   for (int side = 0; side < 2; ++side) {
     const PressureSide<dim>& of = volume.sides[side];
     if (of.unknown == no_index && of.patch < 0)
       continue;
     const double push = (side == 0 ? area : -area) * of.weight;
-    const double force = push * pressure(of.center);
+    const double force = push * pressure(of.center + shift);
     sum.force += force;
     sum.moment += force * arm;
     sum.open_area += push;
@@ -88,7 +90,7 @@ void HydrostaticLoads<dim>::add_closed(const ControlVolume<dim>& volume, int sol
 
 template <int dim>
 void HydrostaticLoads<dim>::add_lumped(int axis, int solid, double mass, const Point<dim>& center) {
-  Point<dim> arm = center - centers_[solid];
+  Point<dim> arm = surface_.beside(solid, center) - centers_[solid];
   arm[axis] = 0;
   Sum& sum = sums_[solid][axis];
   sum.force += mass * gravity_[axis];
@@ -138,7 +140,7 @@ bool HydrostaticLoads<dim>::is_covered(int solid, int axis, const Sum& sum) cons
   double area = 2;  // two ends
   for (int a = 0; a < dim; ++a)
     if (a != axis)
-      area *= surface_.bounds_of_solid(solid).sizes()[a] + spacing_;
+      area *= surface_.own_bounds(solid).sizes()[a] + spacing_;
   const double misplaced = pressure.gradient.norm() * spacing_ * area;
   return std::abs(exact(solid, axis).force - sum.force) <= misplaced;
 }

@@ -53,7 +53,7 @@ std::vector<double> lumped_moments(const std::vector<ControlVolume<dim>>& volume
     for (const SurfaceShare<dim>& share : shares[f]) {
       sums[2 * dim * share.solid + axis] += share.weight * masses[f];
       sums[2 * dim * share.solid + dim + axis] +=
-          share.weight * masses[f] * volumes[f].center[axis];
+          share.weight * masses[f] * solids.own_place(share.solid, volumes[f].center)[axis];
     }
   }
   if (!sums.empty())
@@ -105,8 +105,9 @@ std::vector<Triplet> paper_diagonal_triplets(
         if (share.solid != s)
           continue;
         const Eigen::VectorXd along = at_lumped.velocity.row(axis).transpose();
-        const Eigen::VectorXd arm = turn.transpose() * cross<dim>(volumes[f].center - lumped_center,
-                                                                  Point<dim>::Unit(axis));
+        const Eigen::VectorXd arm =
+            turn.transpose() * cross<dim>(solids.own_place(s, volumes[f].center) - lumped_center,
+                                          Point<dim>::Unit(axis));
         added += share.weight * masses[f] * (along * along.transpose() + arm * arm.transpose());
       }
     }

@@ -30,7 +30,7 @@ template <int dim>
 double thickness(const SurfaceSnapshot<dim>& surface, int solid) {
   const SurfaceMesh<dim> mesh = surface.mesh_of_solid(solid);
   const double of_plate = 2 * volume_properties<dim>(mesh).measure / area<dim>(mesh);
-  const double extent = surface.bounds_of_solid(solid).sizes().minCoeff();
+  const double extent = surface.own_bounds(solid).sizes().minCoeff();
   constexpr double nearly = 0.8;  // part of a ball's or a cube's, whose ratio is extent / (2 dim)
   return of_plate >= nearly * extent / dim ? extent : of_plate;
 }

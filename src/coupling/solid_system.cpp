@@ -74,14 +74,56 @@ SurfaceMesh<dim> SolidSystem<dim>::surface() const {
 }
 
 template <int dim>
-std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::snapshot() const {
-  auto snapshot = std::make_shared<const SurfaceSnapshot<dim>>(surface(), solids_, order_);
+void SolidSystem<dim>::go_round(const Box<dim>& domain, const std::array<bool, dim>& periodic,
+                                double margin) {
+  std::vector<char> carriers(solids_.size(), 0), wanted(solids_.size(), 0);
+  for (const AttachedNode<dim>& node : attached_)
+    carriers[node.solid] = 1;
+  max_over_ranks(comm_, carriers);
+  for (std::size_t i = 0; i < solids_.size(); ++i)
+    wanted[i] =
+        solids_[i].closed && solids_[i].rigid && !solids_[i].prescribed && carriers[i] == 0 ? 1 : 0;
+  repeated_ = RepeatedSolids<dim>(domain, periodic, margin, solids_, surface(), std::move(wanted));
+}
+
+template <int dim>
+std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::snapshot(
+    const SurfaceSnapshot<dim>* before) const {
+  SurfaceMesh<dim> mesh = surface();
+  if (!repeated_.empty())
+    repeated_.show(solids_, before, mesh);
+  auto snapshot = std::make_shared<const SurfaceSnapshot<dim>>(std::move(mesh), solids_, order_,
+                                                               repeated_.images());
   order_ = snapshot->order();
   return snapshot;
 }
 
 template <int dim>
+std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::with_images_of(
+    const SurfaceSnapshot<dim>& other,
+    const std::shared_ptr<const SurfaceSnapshot<dim>>& earlier) const {
+  if (earlier->images() == other.images())
+    return earlier;
+  SurfaceMesh<dim> mesh = earlier->mesh();  // first images, then further ones
+  mesh.vertices.resize(solids_.back().vertex_end);
+  mesh.simplices.resize(solids_.back().simplex_end);
+  for (std::size_t i = 0; i < solids_.size(); ++i)
+    for (int v = solids_[i].vertex_begin; v < solids_[i].vertex_end; ++v)
+      mesh.vertices[v] += other.images().shifts[i] - earlier->images().shifts[i];
+  return std::make_shared<const SurfaceSnapshot<dim>>(std::move(mesh), solids_, other.order(),
+                                                      other.images());
+}
+
+template <int dim>
 bool SolidSystem<dim>::is_where(const SurfaceSnapshot<dim>& snapshot) const {
+  if (!repeated_.empty()) {
+    SurfaceMesh<dim> shown = surface();
+    for (std::size_t i = 0; i < solids_.size(); ++i)
+      for (int v = solids_[i].vertex_begin; v < solids_[i].vertex_end; ++v)
+        shown.vertices[v] += snapshot.images().shifts[i];
+    return std::equal(shown.vertices.begin(), shown.vertices.end(),
+                      snapshot.mesh().vertices.begin());
+  }
   auto there = snapshot.mesh().vertices.begin();
   for (const auto& solid_model : models_) {
     const auto& here = solid_model->surface().vertices;
@@ -122,37 +164,43 @@ double SolidSystem<dim>::largest_surface_speed() const {
 }
 
 template <int dim>
-std::pair<int, SurfacePoint<dim>> SolidSystem<dim>::in_model(const SurfacePoint<dim>& point) const {
+auto SolidSystem<dim>::in_model(SurfacePoint<dim> point, const Point<dim>& x) const -> ModelPoint {
+  ModelPoint result;
+  result.x = x;
+  if (!repeated_.empty()) {
+    point = repeated_.own_point(point);
+    result.x = own_place(repeated_.solid_of(point.simplex), x);
+  }
   const auto next = std::upper_bound(
       begin_.begin(), begin_.end(), point.simplex,
       [](int simplex, const ModelBegin& begin) { return simplex < begin.simplex; });
-  const int m = static_cast<int>(next - begin_.begin()) - 1;
-  SurfacePoint<dim> local = point;
-  local.simplex -= begin_[m].simplex;
-  return {m, local};
+  result.model = static_cast<int>(next - begin_.begin()) - 1;
+  result.point = point;
+  result.point.simplex -= begin_[result.model].simplex;
+  return result;
 }
 
 template <int dim>
 void SolidSystem<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                                     VelocityRow<dim>& row) const {
-  const auto [m, local] = in_model(point);
-  model(m).velocity_row(local, x, row);
+  const ModelPoint local = in_model(point, x);
+  model(local.model).velocity_row(local.point, local.x, row);
   for (GlobalIndex& id : row.dofs)
-    id += begin_[m].id;
+    id += begin_[local.model].id;
 }
 
 template <int dim>
 Point<dim> SolidSystem<dim>::prescribed_velocity(const SurfacePoint<dim>& point,
                                                  const Point<dim>& x) const {
-  const auto [m, local] = in_model(point);
-  return model(m).prescribed_velocity(local, x);
+  const ModelPoint local = in_model(point, x);
+  return model(local.model).prescribed_velocity(local.point, local.x);
 }
 
 template <int dim>
 Point<dim> SolidSystem<dim>::effective_velocity(const SurfacePoint<dim>& point,
                                                 const Point<dim>& x) const {
-  const auto [m, local] = in_model(point);
-  return model(m).effective_velocity(local, x);
+  const ModelPoint local = in_model(point, x);
+  return model(local.model).effective_velocity(local.point, local.x);
 }
 
 template <int dim>

@@ -1,10 +1,12 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
 
 #include "coupling/attached_nodes.hpp"
 #include "coupling/reduction.hpp"
+#include "coupling/repeated_solids.hpp"
 #include "coupling/stacked_operator.hpp"
 #include "interfaces/block_system.hpp"
 #include "interfaces/solid_sides.hpp"
@@ -33,10 +35,28 @@ class SolidSystem {
   RCP<const Map> map() const { return map_; }             ///< never null
   const Communicator& comm() const { return comm_; }
 
-  /// The surfaces of all models at the present positions, one after the other.
+  /// Lets closed rigid solids that move freely go round a domain with periodic axes: snapshots show
+  /// them wherever it has them, up to `margin` [m] beyond its sides. Before the first snapshot.
+  /// Collective.
+  void go_round(const Box<dim>& domain, const std::array<bool, dim>& periodic, double margin);
+  const RepeatedSolids<dim>& repeated() const { return repeated_; }  ///< solids that go round
+  /// Returns the image of x that is nearest to the solid's own place, which goes on beyond periodic
+  /// sides; x itself if the solid is not repeated. Local.
+  Point<dim> own_place(int solid, const Point<dim>& x) const {
+    return repeated_.own_place(solid, x);
+  }
+
+  /// The surfaces of all models at the present positions, one after the other, each at its own
+  /// place.
   SurfaceMesh<dim> surface() const;
   /// Returns a snapshot of this surface for geometric queries. Solids are numbered over all models.
-  std::shared_ptr<const SurfaceSnapshot<dim>> snapshot() const;
+  /// With `before`, a snapshot of earlier positions, all images that either needs are shown.
+  std::shared_ptr<const SurfaceSnapshot<dim>> snapshot(
+      const SurfaceSnapshot<dim>* before = nullptr) const;
+  /// Returns an earlier snapshot with the images of another: itself if it has them.
+  std::shared_ptr<const SurfaceSnapshot<dim>> with_images_of(
+      const SurfaceSnapshot<dim>& other,
+      const std::shared_ptr<const SurfaceSnapshot<dim>>& earlier) const;
   /// True if the surfaces are where this snapshot of them has them, to the last bit.
   bool is_where(const SurfaceSnapshot<dim>& snapshot) const;
   const std::vector<SolidDescription>& solids() const { return solids_; }
@@ -44,13 +64,14 @@ class SolidSystem {
   /// Largest 1-norm of the velocity of a surface vertex, each solid taken as rigid [m/s]. Local.
   double largest_surface_speed() const;
 
-  /// Rows of a surface point of a snapshot, with ids of `map`. Local.
+  /// Rows of a surface point of the last snapshot, with ids of `map`. Of a repeated solid they are
+  /// those of the image nearest to x. Local.
   void velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                     VelocityRow<dim>& row) const;
   /// Makes the row of a point of a rigid solid that is not prescribed, with a surface or without.
   /// Local.
   void rigid_row(int solid, const Point<dim>& x, VelocityRow<dim>& row) const {
-    lockstep::rigid_row(models_, begin_, solids_[solid], x, row);
+    lockstep::rigid_row(models_, begin_, solids_[solid], own_place(solid, x), row);
   }
   /// This rank's nodes that rigid solids carry, at the present positions.
   const std::vector<AttachedNode<dim>>& attached() const { return attached_; }
@@ -134,7 +155,13 @@ class SolidSystem {
  private:
   void find_reduction();
   void move_attached(const Vector& velocity, double time, double dt);
-  std::pair<int, SurfacePoint<dim>> in_model(const SurfacePoint<dim>& point) const;
+  /// A surface point as its model knows it, at its own place.
+  struct ModelPoint {
+    int model = 0;
+    SurfacePoint<dim> point;
+    Point<dim> x;
+  };
+  ModelPoint in_model(SurfacePoint<dim> point, const Point<dim>& x) const;
   RCP<const Vector> part(const Vector& stacked, int m) const;
   RCP<Vector> part(Vector& stacked, int m) const;
   std::vector<StackedPart> parts(double dt) const;
@@ -155,6 +182,7 @@ class SolidSystem {
   Reduction reduction_;
   mutable RCP<const LinearOperator> mass_inverse_;            ///< null: not asked for yet
   mutable std::vector<RCP<const LinearOperator>> of_masses_;  ///< mass operators of the models
+  mutable RepeatedSolids<dim> repeated_;
 };
 
 }  // namespace lockstep

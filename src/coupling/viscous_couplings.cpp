@@ -12,8 +12,11 @@ std::vector<EndVelocity<dim>> ViscousCouplings<dim>::ends_of(const ViscousSystem
                                                              const SolidSystem<dim>& solids,
                                                              const ViscousCoupling<dim>& coupling) {
   std::vector<EndVelocity<dim>> ends(system.links.size());
-  for (std::size_t l = 0; l < system.links.size(); ++l)
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
     coupling.link_row(system.links[l], solids, ends[l]);
+    if (ends[l].solid >= 0)
+      ends[l].position = solids.own_place(ends[l].solid, ends[l].position);
+  }
   return ends;
 }
 

@@ -193,7 +193,7 @@ void add_below(const ConvexPart<dim, false>& part, double root, double exit,
 /// Volume and centroid of a closed solid.
 template <int dim>
 PartOfSolid<dim> whole_solid(const SurfaceSnapshot<dim>& surface, int solid) {
-  const Point<dim> origin = surface.bounds_of_solid(solid).center();  // less round-off
+  const Point<dim> origin = surface.own_bounds(solid).center();  // less round-off
   const SolidDescription& description = surface.solids()[solid];
   VolumeMoments<dim> sum;
   for (int s = description.simplex_begin; s < description.simplex_end; ++s) {
@@ -258,7 +258,7 @@ PartOfSolid<dim> part_in_rotated_box(const SurfaceSnapshot<dim>& surface, int so
 template <int dim>
 PartOfSolid<dim> part_of_solid(const SurfaceSnapshot<dim>& surface, int solid,
                                const Box<dim>& box) {
-  const Box<dim> bounds = surface.bounds_of_solid(solid);
+  const Box<dim> bounds = surface.own_bounds(solid);
   if (box.contains(bounds))
     return whole_solid<dim>(surface, solid);
   if (!box.intersects(bounds))
@@ -279,8 +279,8 @@ PartOfSolid<dim> part_below(const SurfaceSnapshot<dim>& surface, int solid, cons
     return part.isEmpty() ? PartOfSolid<dim>{0, whole_solid<dim>(surface, solid).centroid}
                           : part_of_solid<dim>(surface, solid, part);
   }
-  const double far = surface.bounds_of_solid(solid).diagonal().norm() +
-                     std::abs(up.dot(surface.bounds_of_solid(solid).center()) - level);
+  const double far = surface.own_bounds(solid).diagonal().norm() +
+                     std::abs(up.dot(surface.own_bounds(solid).center()) - level);
   // A rotation that takes `up` to axis 0.
   Rotation<dim> rotation;
   if constexpr (dim == 2)
@@ -288,7 +288,7 @@ PartOfSolid<dim> part_below(const SurfaceSnapshot<dim>& surface, int solid, cons
   else
     rotation =
         Eigen::Quaterniond::FromTwoVectors(up, Point<dim>(Point<dim>::Unit(0))).toRotationMatrix();
-  const Point<dim> center = rotation * surface.bounds_of_solid(solid).center();
+  const Point<dim> center = rotation * surface.own_bounds(solid).center();
   Box<dim> half_space(center - Point<dim>::Constant(far), center + Point<dim>::Constant(far));
   half_space.max()[0] = std::min(half_space.max()[0], level);
   return part_in_rotated_box<dim>(surface, solid, rotation, half_space);

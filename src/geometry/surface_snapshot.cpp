@@ -80,8 +80,10 @@ void for_each_cell(const Index<dim>& begin, const Index<dim>& end, Function f) {
 
 template <int dim>
 SurfaceSnapshot<dim>::SurfaceSnapshot(SurfaceMesh<dim> mesh, std::vector<SolidDescription> solids,
-                                      BoxOrder order)
-    : mesh_(std::move(mesh)), solids_(std::move(solids)) {
+                                      BoxOrder order, SolidImages<dim> images)
+    : mesh_(std::move(mesh)), solids_(std::move(solids)), images_(std::move(images)) {
+  const int n_own = n_simplices();
+  add_images();
   const int n = n_simplices();
   std::vector<Box<dim>> bounds(n), solid_bounds(solids_.size());
   for (int s = 0; s < n; ++s) {
@@ -89,16 +91,57 @@ SurfaceSnapshot<dim>::SurfaceSnapshot(SurfaceMesh<dim> mesh, std::vector<SolidDe
       bounds[s].extend(mesh_.vertices[v]);
     typical_size_ += bounds[s].diagonal().norm() / n;
   }
-  solid_of_.assign(n, -1);
+  solid_of_.resize(n, -1);
   for (int i = 0; i < static_cast<int>(solids_.size()); ++i) {
-    LOCKSTEP_ASSERT(solids_[i].simplex_begin >= 0 && solids_[i].simplex_end <= n);
+    LOCKSTEP_ASSERT(solids_[i].simplex_begin >= 0 && solids_[i].simplex_end <= n_own);
     for (int s = solids_[i].simplex_begin; s < solids_[i].simplex_end; ++s) {
       solid_of_[s] = i;
       solid_bounds[i].extend(bounds[s]);
     }
   }
+  if (n > n_own)
+    own_bounds_ = solid_bounds;
+  for (int s = n_own; s < n; ++s)
+    solid_bounds[solid_of_[s]].extend(bounds[s]);
   tree_ = BoxTree<dim>(std::move(bounds), std::move(order));
   solid_tree_ = BoxTree<dim>(std::move(solid_bounds));
+}
+
+template <int dim>
+void SurfaceSnapshot<dim>::add_images() {
+  solid_of_.assign(n_simplices(), -1);
+  for (const auto& image : images_.others) {
+    const SolidDescription& solid = solids_[image.solid];
+    const int shift = static_cast<int>(mesh_.vertices.size()) - solid.vertex_begin;
+    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
+      mesh_.vertices.push_back(mesh_.vertices[v] + image.shift);
+    for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
+      auto simplex = mesh_.simplices[s];
+      for (int& vertex : simplex)
+        vertex += shift;
+      mesh_.simplices.push_back(simplex);
+      solid_of_.push_back(image.solid);
+    }
+  }
+}
+
+template <int dim>
+std::vector<Box<dim>> SurfaceSnapshot<dim>::bounds_of_images(int solid) const {
+  std::vector<Box<dim>> all{own_bounds(solid)};
+  for (const auto& image : images_.others)
+    if (image.solid == solid)
+      all.push_back(own_bounds(solid).translated(image.shift));
+  return all;
+}
+
+template <int dim>
+Box<dim> SurfaceSnapshot<dim>::room_of(int solid, Box<dim> box) const {
+  for (int a = 0; a < dim; ++a)
+    if (images_.repeats(solid) && images_.period[a] > 0) {
+      box.min()[a] = std::min(box.min()[a], own_bounds(solid).min()[a]);
+      box.max()[a] = std::max(box.max()[a], own_bounds(solid).max()[a]);
+    }
+  return box;
 }
 
 template <int dim>

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,15 +70,46 @@ struct Lattice {
   }
 };
 
+/// Where a periodic domain shows the solids that it repeats: each at one place, a whole number of
+/// periods from its own, and at others where it reaches across a side.
+template <int dim>
+struct SolidImages {
+  struct Image {
+    int solid = -1;
+    Point<dim> shift = Point<dim>::Zero();  ///< from the first place shown to this one [m]
+    bool operator==(const Image& other) const {
+      return solid == other.solid && shift == other.shift;
+    }
+  };
+  Point<dim> period = Point<dim>::Zero();  ///< [m]; 0 along axes that are not periodic
+  std::vector<char> repeated;              ///< by solid; empty: none is
+  std::vector<Point<dim>> shifts;          ///< by solid, from its own place to the first shown [m]
+  std::vector<Image> others;
+  bool operator==(const SolidImages& other) const {
+    return shifts == other.shifts && others == other.others;
+  }
+  bool repeats(int solid) const { return !repeated.empty() && repeated[solid]; }
+  /// The image of x that is nearest to a place.
+  Point<dim> nearest(Point<dim> x, const Point<dim>& place) const {
+    for (int a = 0; a < dim; ++a)
+      if (period[a] > 0)
+        x[a] += period[a] * std::round((place[a] - x[a]) / period[a]);
+    return x;
+  }
+};
+
 /// An immutable picture of all solids' surfaces at one instant, replicated on every rank, with the
 /// queries that everyone needs. Built once per geometry change; queries are const and thread-safe.
 /// Two snapshots of one step have the same simplices and differ in vertex positions only.
+///
+/// Simplices of further images come after those of all solids, whose ranges are the first images.
 template <int dim>
 class SurfaceSnapshot {
  public:
-  /// `order`: that of an earlier snapshot of the same solids, which saves sorting.
+  /// `order`: that of an earlier snapshot of the same solids, which saves sorting. `mesh`: of the
+  /// first images; the others are made of it.
   SurfaceSnapshot(SurfaceMesh<dim> mesh, std::vector<SolidDescription> solids,
-                  BoxOrder order = nullptr);
+                  BoxOrder order = nullptr, SolidImages<dim> images = {});
   SurfaceSnapshot(const SurfaceSnapshot&) = delete;
   SurfaceSnapshot(SurfaceSnapshot&&) = default;
 
@@ -94,7 +126,22 @@ class SurfaceSnapshot {
     return points;
   }
   const Box<dim>& bounds(int simplex) const { return tree_.box(simplex); }
+  /// Bounds of a solid with all its images.
   const Box<dim>& bounds_of_solid(int solid) const { return solid_tree_.box(solid); }
+
+  const SolidImages<dim>& images() const { return images_; }
+  /// Bounds of the first image alone.
+  const Box<dim>& own_bounds(int solid) const {
+    return own_bounds_.empty() ? bounds_of_solid(solid) : own_bounds_[solid];
+  }
+  /// Bounds of each image of a solid.
+  std::vector<Box<dim>> bounds_of_images(int solid) const;
+  /// Image of x that is nearest to the first image of a solid; x if that is not repeated.
+  Point<dim> beside(int solid, const Point<dim>& x) const {
+    return images_.repeats(solid) ? images_.nearest(x, own_bounds(solid).center()) : x;
+  }
+  /// A box without the sides that a solid goes through and comes back: where its first image is.
+  Box<dim> room_of(int solid, Box<dim> box) const;
   /// The surface of one solid, vertices numbered from 0.
   SurfaceMesh<dim> mesh_of_solid(int solid) const;
 
@@ -130,11 +177,15 @@ class SurfaceSnapshot {
                                       const Index<dim>& end) const;
 
  private:
+  void add_images();
+
   SurfaceMesh<dim> mesh_;
   std::vector<SolidDescription> solids_;
   std::vector<int> solid_of_;  ///< per simplex, -1: none
   double typical_size_ = 0;    ///< mean diagonal of the simplices' boxes [m]
   BoxTree<dim> tree_, solid_tree_;
+  SolidImages<dim> images_;
+  std::vector<Box<dim>> own_bounds_;  ///< empty: there is one image of each
 };
 
 /// First passage of the surface, whose vertices move linearly from `before` to `after` (same

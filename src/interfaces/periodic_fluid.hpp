@@ -3,7 +3,8 @@
 
 namespace lockstep {
 
-/// Side of a fluid (`side_of`) that comes in again where it has left: so do no solids.
+/// Side of a fluid (`side_of`) that comes in again where it has left. Of solids, those that
+/// `RepeatedSolids` repeats do.
 template <int dim>
 class PeriodicFluid {
  public:

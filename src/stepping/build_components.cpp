@@ -11,6 +11,7 @@
 #include "base/wait_for_all.hpp"
 #include "base/xml_text.hpp"
 #include "coupling/automatic_coupling.hpp"
+#include "interfaces/periodic_fluid.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/shape_sizes.hpp"
 #include "parameters/source.hpp"
@@ -213,9 +214,19 @@ class SceneBuilder {
       components_.solids =
           std::make_unique<SolidSystem<dim>>(std::move(models), comm_, std::move(constraints));
       check_body_lengths(*components_.solids, domain_length(), mistakes_);
+      go_round_periodic_sides();
       if (has_joints && mistakes_.empty())
         admit_velocities(*components_.solids, setting_.start_time);
     });
+  }
+
+  void go_round_periodic_sides() {
+    constexpr double cells_beyond = 4;  // surfaces farther outside of the domain act on no cell
+    const FluidDiscretization<dim>* fluid = components_.fluid.get();
+    const auto* side = fluid ? side_of<PeriodicFluid<dim>>(*fluid) : nullptr;
+    if (side && fluid->is_periodic())
+      components_.solids->go_round(fluid->bounds(), side->periodic_axes(),
+                                   cells_beyond * fluid->smallest_length());
   }
 
   /// Notes the names of solids that nodes are attached to and the scene has not.

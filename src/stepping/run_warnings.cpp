@@ -49,10 +49,12 @@ void RunWarnings<dim>::warn_of_periodic_sides(long long step, const Components<d
   const std::array<bool, dim> periodic = side->periodic_axes();
   const Box<dim> domain = fluid.bounds();
   const SolidSystem<dim>& all = *components.solids;
+  int i = 0;
   for (int m = 0; m < all.n_models(); ++m)
     for (const SolidDescription& solid : all.model(m).solids()) {
       Box<dim> box;
-      for (int v = solid.vertex_begin; v < solid.vertex_end && !solid.prescribed; ++v)
+      const bool may_be_lost = !all.repeated().includes(i++) && !solid.prescribed;
+      for (int v = solid.vertex_begin; v < solid.vertex_end && may_be_lost; ++v)
         box.extend(all.model(m).surface().vertices[v]);
       for (int a = 0; a < dim && !box.isEmpty() && !of_periodic_sides_; ++a) {
         const double beyond =
@@ -61,9 +63,9 @@ void RunWarnings<dim>::warn_of_periodic_sides(long long step, const Components<d
           continue;
         of_periodic_sides_ = true;
         log.warning(
-            "Step {}: \"{}\" goes through a periodic side along {}. Fluid comes in again at the "
-            "other side, a solid does not: what of it is beyond the side meets neither fluid nor "
-            "solids. Later ones are not reported.",
+            "Step {}: \"{}\" goes through a periodic side along {}. Fluid and closed rigid bodies "
+            "shorter than the domain come in again at the other side, this one does not: what of "
+            "it is beyond the side meets neither fluid nor solids. Later ones are not reported.",
             step, solid.name, axis_names[a]);
       }
     }

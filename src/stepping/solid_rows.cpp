@@ -66,7 +66,7 @@ std::vector<char> sunk_solids(const Components<dim>& components,
   std::vector<Point<dim>> corners;
   for (std::size_t i = 0; i < solids.size(); ++i)
     for (int k = 0; k < n_corners; ++k) {
-      const Box<dim>& box = surface.bounds_of_solid(static_cast<int>(i));
+      const Box<dim>& box = surface.own_bounds(static_cast<int>(i));
       corners.push_back(box.isEmpty() ? states[i].center_of_mass
                                       : box.corner(static_cast<typename Box<dim>::CornerType>(k)));
     }
@@ -81,12 +81,15 @@ std::vector<char> sunk_solids(const Components<dim>& components,
   return sunk;
 }
 
-/// A warning where solids may leave a periodic domain; empty: none can.
+/// A warning where solids may leave a periodic domain for good; empty: none can.
 template <int dim>
-std::string periodic_warning(const std::vector<SolidDescription>& solids,
+std::string periodic_warning(const SolidSystem<dim>& system,
                              const FluidDiscretization<dim>& fluid) {
-  const auto is_free = [](const SolidDescription& solid) {
-    return !solid.prescribed && solid.simplex_end > solid.simplex_begin;
+  const std::vector<SolidDescription>& solids = system.solids();
+  const auto is_free = [&](const SolidDescription& solid) {
+    const int i = static_cast<int>(&solid - solids.data());
+    return !solid.prescribed && solid.simplex_end > solid.simplex_begin &&
+           !system.repeated().includes(i);
   };
   const auto first = std::find_if(solids.begin(), solids.end(), is_free);
   const auto* side = side_of<PeriodicFluid<dim>>(fluid);
@@ -98,8 +101,8 @@ std::string periodic_warning(const std::vector<SolidDescription>& solids,
     if (periodic[a])
       axes.push_back("xyz"[a]);
   return fmt::format(
-      "{:<22} fluid alone is periodic along {}: what of \"{}\"{} goes through such a side meets "
-      "neither fluid nor solids beyond it\n",
+      "{:<22} the domain is periodic along {} for fluid and closed rigid bodies shorter than it: "
+      "what of \"{}\"{} goes through such a side meets neither fluid nor solids beyond it\n",
       "warning", fmt::join(axes, " and "), shortened(first->name),
       std::count_if(first, solids.end(), is_free) > 1 ? " and other free solids" : "");
 }
@@ -138,7 +141,7 @@ std::string solid_rows(const Components<dim>& components, const SurfaceSnapshot<
   std::string text;
   for (int i = 0; i < std::min(n, most_rows); ++i)
     text += fmt::format("  {:<20} {}\n", shortened(solids[i].name),
-                        row(components, solids[i], states[i], surface.bounds_of_solid(i)));
+                        row(components, solids[i], states[i], surface.own_bounds(i)));
   return text + and_more(n);
 }
 
@@ -149,14 +152,14 @@ std::string solid_warnings(const Components<dim>& components, const SurfaceSnaps
   std::string text;
   int n = 0;
   for (std::size_t i = 0; i < solids.size(); ++i) {
-    const Box<dim> box = surface.bounds_of_solid(static_cast<int>(i));
+    const Box<dim> box = surface.own_bounds(static_cast<int>(i));
     std::string what = box.isEmpty() ? "" : doubt<dim>(box, solids[i], *components.fluid);
     if (what.empty() && sunk[i])
       what = "floats in the liquid, but is all under its surface at the start";
     if (!what.empty() && n++ < most_rows)
       text += fmt::format("{:<22} \"{}\" {}\n", "warning", shortened(solids[i].name), what);
   }
-  return text + and_more(n) + periodic_warning<dim>(solids, *components.fluid);
+  return text + and_more(n) + periodic_warning<dim>(*components.solids, *components.fluid);
 }
 
 template std::string solid_rows(const Components<2>&, const SurfaceSnapshot<2>&);

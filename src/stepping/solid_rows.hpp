@@ -13,7 +13,8 @@ std::string solid_rows(const Components<dim>& components, const SurfaceSnapshot<
 
 /// A line for each solid that is likely a mistake: smaller than two cells, outside of the domain,
 /// lighter than the liquid and under its surface at the start. Collective.
-/// Another one where a solid is free to leave a periodic domain: fluid comes back, solids do not.
+/// Another one where a solid is free to leave a periodic domain and does not come back as fluid
+/// does.
 template <int dim>
 std::string solid_warnings(const Components<dim>& components, const SurfaceSnapshot<dim>& surface);
 

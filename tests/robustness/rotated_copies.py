@@ -83,7 +83,7 @@ def turn_list(content, name, dimension):
 
 def has_rotated_copy(scene):
     """Not where directions or numbers of cells are built in (gas has its pressure of a volume of triangles), not where contact decides by inequalities, and not where a
-    body may stick through a periodic side: it is not repeated at the other."""
+    solid may stick through a periodic side: not all are repeated at the other."""
     return (not any(word in scene.xml for word in NOT_TURNED) and scene.content["Contact"]["Type"] == "none" and
             not (scene.facts.periodic and scene.content["Solids"]))
 

@@ -80,23 +80,31 @@ class Explain(unittest.TestCase):
         self.assertEqual(self.explained(solids, Fluid=pool)[1],
                          ['"Cork" floats in the liquid, but is all under its surface at the start'])
 
-    def test_solids_do_not_come_back_through_periodic_sides(self):
-        """Told before the run, and once in it, when the first goes through; not where they cannot, nor of held ones."""
+    def test_shells_do_not_come_back_through_periodic_sides(self):
+        """Told before the run, and once in it, when the first goes through; not where they cannot, nor of held ones, nor of what goes round."""
         sides = {f"x {end}": {"Type": "periodic"} for end in ("lower", "upper")}
         domain = {"Cells": (16, 16), "Sides": sides}
-        fast = {"Ball": box(.25, .25, .8, .25, Velocity=(5., 0.)), "Rock": box(.25, .25, .8, .7, Velocity=(4., 0.)),
+        cup = {"Geometry": {"Shape": "open box", "Size": (.25, .25)}, "Surface Density": 100.}
+        fast = {"Cup": {**box(.25, .25, .8, .25, Velocity=(5., 0.)), **cup},
+                "Mug": {**box(.25, .25, .8, .7, Velocity=(4., 0.)), **cup},
                 "Sill": box(.25, .25, 1., .5, **STATIC)}
-        warning = ('fluid alone is periodic along x: what of "Ball" and other free solids goes through such a side meets neither fluid nor '
-                   "solids beyond it")
+        for name in ("Cup", "Mug"):
+            del fast[name]["Density"]
+        round_and_round = {"Ball": box(.25, .25, .8, .25, Velocity=(5., 0.))}
+        warning = ('the domain is periodic along x for fluid and closed rigid bodies shorter than it: what of "Cup" and other free solids '
+                   "goes through such a side meets neither fluid nor solids beyond it")
         self.assertEqual(self.explained(fast, Domain=domain)[1], [warning])
         self.assertEqual(self.explained({"Sill": fast["Sill"]}, Domain=domain)[1], [])
+        self.assertEqual(self.explained(round_and_round, Domain={"Cells": (32, 32), "Sides": sides})[1], [])
+        self.assertIn('what of "Raft" goes through', self.explained({"Raft": box(.8, .1, .5, .5)}, Domain={"Cells": (32, 32), "Sides": sides})[1][0])
         time = {"End": 1., "Fixed Step": .01, "Steps": 8}
-        for solids, sides_there, told in ((fast, domain, 1), ({"Sill": fast["Sill"]}, domain, 0), ({"Ball": box(.25, .25, .5, .25)}, domain, 0),
+        for solids, sides_there, told in ((fast, domain, 1), ({"Sill": fast["Sill"]}, domain, 0),
+                                          (round_and_round, {"Cells": (32, 32), "Sides": sides}, 0),
                                           (fast, {"Cells": (16, 16), "Sides": {f"x {end}": {"Type": "open"} for end in ("lower", "upper")}}, 0)):
             log = self.log(solids, Domain=sides_there, Time=time)
             self.assertEqual(log.count("goes through a periodic side"), told, log)
             if told:  # its edge, at .925 m at the start, is at .975 m after one step and beyond 1 m after two
-                self.assertIn('warning: Step 2: "Ball" goes through a periodic side along x.', log)
+                self.assertIn('warning: Step 2: "Cup" goes through a periodic side along x.', log)
 
     def log(self, solids, **content):
         with tempfile.TemporaryDirectory() as folder:

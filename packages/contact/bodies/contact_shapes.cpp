@@ -88,13 +88,14 @@ bool ContactTopology<dim>::connected(int vertex, int other) const {
 
 template <int dim>
 ContactShapes<dim>::ContactShapes(const SolidSystem<dim>& system, ContactTopology<dim>& topology)
-    : system_(system), solids_(system.solids()), topology_(&topology), mesh_(system.surface()) {
+    : system_(system), topology_(&topology), mesh_(system.surface()) {
+  add_images();
   if (!topology.belongs_to(mesh_))
-    topology = ContactTopology<dim>(mesh_, solids_);
-  solid_bounds_.resize(solids_.size());
+    topology = ContactTopology<dim>(mesh_, solids());
+  solid_bounds_.resize(n_solids());
   bounds_.resize(mesh_.simplices.size());
   for (int i = 0; i < n_solids(); ++i) {
-    for (int s = solids_[i].simplex_begin; s < solids_[i].simplex_end; ++s) {
+    for (int s = solids()[i].simplex_begin; s < solids()[i].simplex_end; ++s) {
       for (int vertex : mesh_.simplices[s])
         bounds_[s].extend(mesh_.vertices[vertex]);
       solid_bounds_[i].extend(bounds_[s]);
@@ -103,6 +104,55 @@ ContactShapes<dim>::ContactShapes(const SolidSystem<dim>& system, ContactTopolog
   find_combinations();
   find_carriers();
   find_held();
+}
+
+template <int dim>
+void ContactShapes<dim>::add_images() {
+  images_ = contact_images(system_, mesh_);
+  if (images_.empty())
+    return;
+  with_images_ = system_.solids();
+  for (const auto& image : images_) {
+    SolidDescription solid = with_images_[image.solid];
+    const int first_vertex = static_cast<int>(mesh_.vertices.size());
+    const int first_simplex = static_cast<int>(mesh_.simplices.size());
+    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
+      mesh_.vertices.push_back(mesh_.vertices[v] + image.shift);
+    for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
+      auto simplex = mesh_.simplices[s];
+      for (int& vertex : simplex)
+        vertex += first_vertex - solid.vertex_begin;
+      mesh_.simplices.push_back(simplex);
+    }
+    solid.vertex_begin = first_vertex;
+    solid.vertex_end = static_cast<int>(mesh_.vertices.size());
+    solid.simplex_begin = first_simplex;
+    solid.simplex_end = static_cast<int>(mesh_.simplices.size());
+    with_images_.push_back(solid);
+  }
+}
+
+template <int dim>
+bool ContactShapes<dim>::may_meet(int solid, int other) const {
+  if (!is_image(solid) && !is_image(other))
+    return true;
+  if (is_image(solid) && is_image(other))
+    return false;
+  const int own = is_image(solid) ? other : solid,
+            repeated = source(is_image(solid) ? solid : other);
+  return own < repeated || (own > repeated && !system_.repeated().includes(own));
+}
+
+template <int dim>
+SurfacePoint<dim> ContactShapes<dim>::known_to_system(SurfacePoint<dim> point) const {
+  if (images_.empty() || point.simplex < system_.solids().back().simplex_end)
+    return point;
+  const auto last = std::upper_bound(
+      with_images_.begin(), with_images_.end(), point.simplex,
+      [](int simplex, const SolidDescription& solid) { return simplex < solid.simplex_end; });
+  const int solid = source(static_cast<int>(last - with_images_.begin()));
+  point.simplex += with_images_[solid].simplex_begin - last->simplex_begin;
+  return point;
 }
 
 /// Contacts are the same on all ranks, so all know all combinations.
@@ -138,7 +188,7 @@ void ContactShapes<dim>::find_carriers() {
     carrier_of.emplace(static_cast<GlobalIndex>(all[k]), static_cast<int>(all[k + 1]));
   carriers_.assign(mesh_.vertices.size(), -1);
   VelocityRow<dim> row;
-  for (const SolidDescription& solid : solids_) {
+  for (const SolidDescription& solid : solids()) {
     if (solid.rigid || solid.prescribed)
       continue;
     for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
@@ -178,7 +228,7 @@ bool ContactShapes<dim>::hangs_on(const SurfacePoint<dim>& point, int solid) con
 template <int dim>
 void ContactShapes<dim>::velocity_row(const SurfacePoint<dim>& point, const Point<dim>& x,
                                       VelocityRow<dim>& row) const {
-  system_.velocity_row(point, x, row);
+  system_.velocity_row(known_to_system(point), x, row);
   resolve(row);
 }
 
@@ -186,7 +236,7 @@ template <int dim>
 Point<dim> ContactShapes<dim>::rigid_velocity(int solid, const Point<dim>& x,
                                               const std::vector<double>& velocity) const {
   VelocityRow<dim> row;
-  system_.rigid_row(solid, x, row);
+  system_.rigid_row(source(solid), x, row);
   Point<dim> sum = constraint_error_of(row);
   resolve(row);
   for (std::size_t k = 0; k < row.dofs.size(); ++k)
@@ -196,7 +246,7 @@ Point<dim> ContactShapes<dim>::rigid_velocity(int solid, const Point<dim>& x,
 
 template <int dim>
 void ContactShapes<dim>::rigid_row(int solid, const Point<dim>& x, VelocityRow<dim>& row) const {
-  system_.rigid_row(solid, x, row);
+  system_.rigid_row(source(solid), x, row);
   resolve(row);
 }
 
@@ -259,7 +309,7 @@ Point<dim> ContactShapes<dim>::constraint_error(const SurfacePoint<dim>& point,
   if (constraint_error_.empty())
     return Point<dim>::Zero();
   VelocityRow<dim> row;
-  system_.velocity_row(point, x, row);
+  system_.velocity_row(known_to_system(point), x, row);
   return constraint_error_of(row);
 }
 
@@ -279,12 +329,12 @@ void ContactShapes<dim>::find_held() {
     free = replicated(system_, *system_.reduction().unknowns());
   VelocityRow<dim> row;
   for (int i = 0; i < n_solids(); ++i) {
-    if (solids_[i].prescribed)
-      std::fill(held_.begin() + solids_[i].vertex_begin, held_.begin() + solids_[i].vertex_end,
+    if (solids()[i].prescribed)
+      std::fill(held_.begin() + solids()[i].vertex_begin, held_.begin() + solids()[i].vertex_end,
                 true);
-    if (solids_[i].prescribed || solids_[i].rigid || free.empty())
+    if (solids()[i].prescribed || solids()[i].rigid || free.empty())
       continue;
-    for (int v = solids_[i].vertex_begin; v < solids_[i].vertex_end; ++v) {
+    for (int v = solids()[i].vertex_begin; v < solids()[i].vertex_end; ++v) {
       const SurfacePoint<dim> point = at_vertex(v);
       if (point.simplex < 0)
         continue;
@@ -364,7 +414,7 @@ bool ContactShapes<dim>::inside_of(const ForEach& for_each_simplex, const Point<
 template <int dim>
 bool ContactShapes<dim>::inside(int solid, const Point<dim>& x, double radius) const {
   const auto all = [this, solid](const auto& look) {
-    for (int s = solids_[solid].simplex_begin; s < solids_[solid].simplex_end; ++s)
+    for (int s = solids()[solid].simplex_begin; s < solids()[solid].simplex_end; ++s)
       look(s);
   };
   return inside_of(all, x, radius);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/bodies/contact_images.hpp"
 #include "coupling/solid_system.hpp"
 #include "geometry/box_tree.hpp"
 
@@ -48,16 +49,30 @@ class ContactTopology {
   mutable std::vector<std::array<BoxOrder, 3>> orders_;
 };
 
-/// The surfaces of all solids at one instant, with the numbers of `SolidSystem::snapshot`, and the
-/// geometric queries of contacts. The same on all ranks.
+/// The surfaces of all solids at one instant, with the numbers of `SolidSystem::surface`, those of
+/// images after them, and the geometric queries of contacts. The same on all ranks.
 template <int dim>
 class ContactShapes {
  public:
   /// `topology` is renewed if it belongs to another mesh. Collective.
   ContactShapes(const SolidSystem<dim>& system, ContactTopology<dim>& topology);
 
-  const std::vector<SolidDescription>& solids() const { return solids_; }
-  int n_solids() const { return static_cast<int>(solids_.size()); }
+  /// Returns those of the system at their own places, then images of them (`contact_images`).
+  const std::vector<SolidDescription>& solids() const {
+    return images_.empty() ? system_.solids() : with_images_;
+  }
+  int n_solids() const { return static_cast<int>(solids().size()); }
+  bool is_image(int solid) const { return solid >= static_cast<int>(system_.solids().size()); }
+  /// The solid of the system that this one is, or is an image of.
+  int source(int solid) const { return is_image(solid) ? image(solid).solid : solid; }
+  /// From the place of that solid to this one [m].
+  Point<dim> shift(int solid) const {
+    return is_image(solid) ? image(solid).shift : Point<dim>(Point<dim>::Zero());
+  }
+  /// True if a contact of these two counts: of a pair one image does, and none of itself.
+  bool may_meet(int solid, int other) const;
+  /// Returns the point with the simplex that the system knows; its position stays.
+  SurfacePoint<dim> known_to_system(SurfacePoint<dim> point) const;
   const SurfaceMesh<dim>& mesh() const { return mesh_; }
   const ContactTopology<dim>& topology() const { return *topology_; }
 
@@ -100,7 +115,7 @@ class ContactShapes {
   /// Returns the part of a point's velocity that is due to `set_constraint_error`.
   Point<dim> constraint_error(const SurfacePoint<dim>& point, const Point<dim>& x) const;
   Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const {
-    return system_.prescribed_velocity(point, x);
+    return system_.prescribed_velocity(known_to_system(point), x);
   }
   /// True if contact cannot move this vertex: of a prescribed solid, or a pinned node.
   bool held(int vertex) const { return held_[vertex]; }
@@ -120,6 +135,10 @@ class ContactShapes {
   template <typename ForEach>
   bool inside_of(const ForEach& for_each_simplex, const Point<dim>& x, double radius) const;
 
+  const typename SolidImages<dim>::Image& image(int solid) const {
+    return images_[solid - system_.solids().size()];
+  }
+  void add_images();
   void find_combinations();
   void find_carriers();
   void resolve(VelocityRow<dim>& row) const;
@@ -127,9 +146,10 @@ class ContactShapes {
   void find_held();
 
   const SolidSystem<dim>& system_;
-  const std::vector<SolidDescription>& solids_;
   const ContactTopology<dim>* topology_;
   SurfaceMesh<dim> mesh_;
+  std::vector<typename SolidImages<dim>::Image> images_;
+  std::vector<SolidDescription> with_images_;  ///< empty without images
   std::vector<Box<dim>> bounds_, solid_bounds_;
   std::unordered_map<GlobalIndex, std::vector<std::pair<GlobalIndex, double>>> combinations_;
   std::vector<double> constraint_error_;  ///< empty: none

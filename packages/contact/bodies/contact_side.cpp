@@ -28,12 +28,12 @@ std::vector<std::pair<GlobalIndex, double>> impulse_on(const SolidSystem<dim>& s
                                                        const ContactSide<dim>& side,
                                                        const Point<dim>& impulse) {
   std::vector<std::pair<GlobalIndex, double>> on_dofs;
-  if (system.solids()[side.solid].prescribed)
+  if (shapes.solids()[side.solid].prescribed)
     return on_dofs;
   VelocityRow<dim> row;
   for (const Carrier<dim>& carrier : carriers_of(shapes, side)) {
     const Point<dim> pushed = carrier.factor.transpose() * impulse;
-    system.velocity_row(carrier.point, side.x, row);
+    system.velocity_row(shapes.known_to_system(carrier.point), side.x, row);
     for (std::size_t k = 0; k < row.dofs.size(); ++k)
       on_dofs.emplace_back(row.dofs[k], row.coefficients[k].dot(pushed));
   }

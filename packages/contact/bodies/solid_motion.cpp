@@ -86,13 +86,16 @@ SolidMotion<dim>::SolidMotion(const SolidSystem<dim>& system, const ContactShape
     SurfacePoint<dim> point;
     point.simplex = solid.simplex_begin;
     point.barycentric.fill(1.0 / dim);
-    motion.center = centers[i];
+    motion.center = centers[shapes.source(i)] + shapes.shift(i);
     const auto field = [&](const Point<dim>& x) {
       return solid.prescribed ? shapes.prescribed_velocity(point, x)
                               : shapes.rigid_velocity(i, x, velocity);
     };
     motion.velocity = field(motion.center);
-    const double arm = has_surface ? box.diagonal().norm() : 1;
+    // Rows are those of the nearest image: an arm stays well within half a period.
+    const double arm = has_surface ? box.diagonal().norm() *
+                                         (system.repeated().includes(shapes.source(i)) ? 0.25 : 1)
+                                   : 1;
     for (int a = 0; a < dim; ++a) {
       motion.gradient.col(a) =
           (field(motion.center + arm * Point<dim>::Unit(a)) - motion.velocity) / arm;

@@ -114,7 +114,7 @@ template <int dim>
 void ImpulseSolver<dim>::add_pushes(const Row& row, const Point<dim>& impulse, int number,
                                     std::vector<PrescribedPush<dim>>& pushes) const {
   const auto add = [&](const ContactSide<dim>& side, double sign) {
-    if (side.solid < 0 || !system_.solids()[side.solid].prescribed)
+    if (side.solid < 0 || !shapes_.solids()[side.solid].prescribed)
       return;
     PrescribedPush<dim> push{number, side.solid, {}};
     push.impulse.add(side.x, sign * impulse);

@@ -39,8 +39,8 @@ ImpulseSolver<dim>::ImpulseSolver(const SolidSystem<dim>& system, const ContactS
 
 template <int dim>
 void ImpulseSolver<dim>::add_side(Row& row, const ContactSide<dim>& side, double sign) {
-  if (system_.solids()[side.solid].prescribed) {
-    row.of_given += sign * system_.prescribed_velocity(side.point, side.x);
+  if (shapes_.solids()[side.solid].prescribed) {
+    row.of_given += sign * shapes_.prescribed_velocity(side.point, side.x);
     return;
   }
   for (const auto& [point, factor] : carriers_of(shapes_, side)) {
@@ -114,7 +114,7 @@ void ImpulseSolver<dim>::add_response(Row& row) {
 template <int dim>
 typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& contact,
                                                             double friction) {
-  const auto& solids = system_.solids();
+  const auto& solids = shapes_.solids();
   Row row;
   row.contact = contact;
   row.friction = friction;

@@ -71,7 +71,7 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
     vertices.emplace_back(x);
   PrimitivePairs<dim> primitives(shapes, std::move(vertices));
   const auto any_moves = [&](int i, int j) {
-    return !solids[i].prescribed || !solids[j].prescribed;
+    return (!solids[i].prescribed || !solids[j].prescribed) && shapes.may_meet(i, j);
   };
   for (const auto& [i, j] : meeting_pairs<dim>(boxes, any_moves)) {
     if (!solids[i].rigid || !solids[j].rigid) {
@@ -85,7 +85,7 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
   }
   for (int i = 0; i < shapes.n_solids(); ++i) {
     const SolidDescription& solid = solids[i];
-    if (solid.prescribed || solid.simplex_begin == solid.simplex_end)
+    if (solid.prescribed || solid.simplex_begin == solid.simplex_end || shapes.is_image(i))
       continue;
     if (!solid.rigid)
       add_surface_contacts(shapes, motion, primitives, reach, i, i, contacts);

@@ -17,8 +17,20 @@ constexpr double far = 2.5;
 /// The shift of phi that shows the area [cells].
 constexpr double probe = 1e-3;
 
-/// Volume of closed solids in a box that may reach beyond the upper ends of periodic axes. Solids
-/// are not repeated there: the part of them at the lower end counts, too.
+/// Volume in a box of the closed solids that no image repeats.
+template <int dim>
+double volume_of_unrepeated(const SurfaceSnapshot<dim>& surface, const Box<dim>& box) {
+  std::vector<int> solids;
+  surface.solids_touching(box, solids);
+  double volume = 0;
+  for (const int solid : solids)
+    if (surface.solids()[solid].closed && !surface.images().repeats(solid))
+      volume += solid_volume_in_box<dim>(surface, box, solid);
+  return std::min(volume, box.volume());
+}
+
+/// Volume of closed solids in a box that may reach beyond the upper ends of periodic axes. Of
+/// solids that are not repeated there, the part at the lower end counts, too.
 template <int dim>
 double solid_volume_across_sides(const MacDomain<dim>& domain, const SurfaceSnapshot<dim>& surface,
                                  const Box<dim>& box) {
@@ -33,8 +45,10 @@ double solid_volume_across_sides(const MacDomain<dim>& domain, const SurfaceSnap
         reaches = reaches && domain.boundary.periodic(a) &&
                   box.max()[a] > upper[a] + 0.1 * domain.spacing();
       }
+    const Box<dim> moved(box.min() - shift, box.max() - shift);
     if (reaches)
-      volume += solid_volume_in_box<dim>(surface, Box<dim>(box.min() - shift, box.max() - shift));
+      volume += image == 0 ? solid_volume_in_box<dim>(surface, moved)
+                           : volume_of_unrepeated<dim>(surface, moved);
   }
   return volume;
 }

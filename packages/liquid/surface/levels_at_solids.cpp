@@ -59,10 +59,14 @@ class LevelFinder {
     ++heights.n;
   }
 
-  /// Cells count, and not phi, which deep in solids is that of an earlier place of the solid.
   void look_around(int solid, Heights& heights) {
+    for (const Box<dim>& bounds : surface_.bounds_of_images(solid))
+      look_around(solid, bounds, heights);
+  }
+
+  /// Cells count, and not phi, which deep in solids is that of an earlier place of the solid.
+  void look_around(int solid, const Box<dim>& bounds, Heights& heights) {
     const Point<dim> margin = Point<dim>::Constant(reach_of_levels * grid_.spacing());
-    const Box<dim> bounds = surface_.bounds_of_solid(solid);
     const Box<dim> around(bounds.min() - margin, bounds.max() + margin);
     surface_.solids_touching(around, candidates_);
     const bool is_alone = candidates_.size() == 1;

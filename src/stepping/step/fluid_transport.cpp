@@ -59,10 +59,12 @@ template <int dim>
 void FluidTransport<dim>::carry(const StepTime& step) {
   auto& fluid = *components_.fluid;
   const auto& solids = *components_.solids;
-  const std::shared_ptr<const SurfaceSnapshot<dim>> before = system_.surface();
+  auto before = system_.surface();
   const bool stays =
       frozen_at_rest_ && solids_rest() && (solids.empty() || solids.is_where(*before));
-  const auto after = stays || solids.empty() ? before : solids.snapshot();
+  const auto after = stays || solids.empty() ? before : solids.snapshot(before.get());
+  if (after != before)
+    before = solids.with_images_of(*after, before);
   const MovingSurface<dim> moving{before, after, [&solids](const SurfacePoint<dim>& point) {
                                     return solids.effective_velocity(point, point.position);
                                   }};

@@ -110,7 +110,8 @@ void SolidForces<dim>::add_drops(SolidMomentum<dim>& result) const {
     const auto values = given->getDataNonConst();
     VelocityRow<dim> row;
     for (const SurfaceImpulse<dim>& hit : impulses) {
-      result.on_each[surface.solid_of(hit.point.simplex)].add(hit.place, hit.impulse);
+      const int solid = surface.solid_of(hit.point.simplex);
+      result.on_each[solid].add(solids.own_place(solid, hit.place), hit.impulse);
       solids.velocity_row(hit.point, hit.place, row);
       for (std::size_t k = 0; k < row.dofs.size(); ++k) {
         const int local = solids.map()->getLocalElement(row.dofs[k]);
