@@ -39,7 +39,7 @@ class FractionHeights {
   };
   struct Column {
     bool is_known = false;
-    double height = 0;  ///< that of the liquid, above the inner end of the middle's cell [cells]
+    double height = 0;  ///< thickness of liquid above the inner end of the middle cell [cells]
     int row = 0;        ///< in which the surface is, from that cell outwards
   };
   static constexpr int n_columns = dim == 2 ? width : width * width;
