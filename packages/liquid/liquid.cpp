@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "liquid/common/dry_cells.hpp"
+#include "liquid/surface/surface_tension.hpp"
 #include "liquid/surface/wave_damping.hpp"
 
 namespace lockstep {
@@ -112,7 +113,12 @@ FreeSurface<dim> Liquid<dim>::surface() {
     leading_distance_ = interface_->distance();
     for (std::size_t cell = 0; cell < leading_distance_.size(); ++cell)
       leading_distance_[cell] += filter_shift_[cell];
-    surface.leading_distance = &leading_distance_;
+    surface.curvature = [this](int wet, int axis, int side, double place) {
+      // Below air without mass, drops that swing would gain by what heights see of short waves.
+      const auto known =
+          has_gas() ? interface_->curvature(wet, axis, side, place, filter_shift_) : std::nullopt;
+      return known ? *known : curvature(domain_, leading_distance_, wet, axis, side, place);
+    };
   }
   // All crossings about a wet cell's centre must be at one place, or the capillary force would
   // drive the fluid between two such places, by its difference over next to no distance.

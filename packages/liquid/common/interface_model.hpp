@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/errors.hpp"
@@ -73,6 +74,14 @@ class InterfaceModel : public PlugIn {
   virtual double crossing(int wet_cell, int dry_cell) const {
     const CellField& phi = distance();
     return phi[wet_cell] / (phi[wet_cell] - phi[dry_cell]);
+  }
+  /// Curvature of the surface where it crosses the line from the centre of a wet cell to that of
+  /// the dry one beside it, at the part `place` of the way, of the surface that lies `lead` [m]
+  /// within this one, a field of small values near it; positive where the liquid is convex [1/m].
+  /// Nothing where phi knows as much, as by default. Local.
+  virtual std::optional<double> curvature(int /*wet*/, int /*axis*/, int /*side*/, double /*place*/,
+                                          const CellField& /*lead*/) const {
+    return {};
   }
   /// Half width of the narrow band: cells around the liquid's surface over which phi is known and a
   /// velocity is needed, for a step in which nothing moves over more than so many cells. Local.

@@ -29,6 +29,7 @@ struct SolidCells {
            std::any_of(state.surface->solids().begin(), state.surface->solids().end(), is_one);
   }
   bool has_shells() const { return has_solids(false); }
+  bool near_surface(int cell) const { return !near.empty() && near[cell] != 0; }
   bool is_fluid(int cell) const { return state.cells[cell] == CellState::fluid; }
   /// Returns the fluid cell beside a fluid cell if no surface comes between their centres, else -1.
   int seen_neighbor(const TiledGrid<dim>& grid, int cell, int axis, int side) const {

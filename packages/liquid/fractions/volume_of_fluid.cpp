@@ -7,6 +7,7 @@
 #include "liquid/common/band_tiles.hpp"
 #include "liquid/common/wet_fraction.hpp"
 #include "liquid/fractions/fraction_balance.hpp"
+#include "liquid/fractions/fraction_heights.hpp"
 #include "liquid/fractions/fraction_solids.hpp"
 #include "output/checkpoint.hpp"
 #include "staggered/state/stored_fields.hpp"
@@ -54,6 +55,13 @@ VolumeOfFluid<dim>::VolumeOfFluid(const MacDomain<dim>& domain,
 template <int dim>
 int VolumeOfFluid<dim>::band(double largest_displacement) const {
   return std::max(parameters_.band, static_cast<int>(std::ceil(largest_displacement)) + 4);
+}
+
+template <int dim>
+std::optional<double> VolumeOfFluid<dim>::curvature(int wet, int axis, int side, double place,
+                                                    const CellField& lead) const {
+  return FractionHeights<dim>(domain_, solids_, fractions_.liquid, phi_, lead)
+      .curvature(wet, axis, side, place);
 }
 
 template <int dim>
@@ -232,14 +240,16 @@ void VolumeOfFluid<dim>::make_distance(const std::vector<char>& tiles) {
   planes_.set_distance(solids_, tiles, fractions_.liquid, cut_off(), phi_);
   redistance(domain_, solids_, tiles, cut_off(), phi_, NearCells::keep);
   domain_.full_halo.fill(phi_);
-  if (!solids_.state.surface)
+  if (!solids_.state.surface) {
+    domain_.full_halo.fill(fractions_.liquid);
     return;
+  }
   continuation_.into_solids(domain_, solids_, cut_off(), phi_);
   domain_.grid.for_each_owned_cell([&](int cell) {
     if (!solids_.is_fluid(cell))
       fractions_.set(cell, std::clamp(0.5 - phi_[cell] / h, 0.0, 1.0));
   });
-  domain_.halo.fill(fractions_.liquid);
+  domain_.full_halo.fill(fractions_.liquid);
   bring_out_of_solids(domain_, solids_, fractions_);
 }
 
@@ -319,7 +329,7 @@ void VolumeOfFluid<dim>::load(const CheckpointReader& checkpoint) {
                {"liquid_part", {&fractions_.liquid}},
                {"liquid_defect", {&fractions_.defect}}},
               checkpoint);
-  domain_.full_halo.fill(phi_);
+  domain_.full_halo.fill({&phi_, &fractions_.liquid});
   const auto numbers = checkpoint.file().read_all<double>("fluid/liquid_ledger");
   checkpoint.check(numbers.size() == 6 && numbers[0] >= 0 && numbers[1] >= 0 && numbers[1] < 1e9,
                    "its ledger of the liquid is incomplete");

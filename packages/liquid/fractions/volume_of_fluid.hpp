@@ -40,6 +40,9 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   void initialise(const SignedDistance<dim>& distance, const Surface& surface) override;
   void advance(const InterfaceStep<dim>& step) override;
   const CellField& distance() const override { return phi_; }
+  /// By heights.
+  std::optional<double> curvature(int wet, int axis, int side, double place,
+                                  const CellField& lead) const override;
   int band(double largest_displacement) const override;
   bool moves_by_fluxes() const override { return true; }
   LiquidLedger ledger() const override;

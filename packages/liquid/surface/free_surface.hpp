@@ -15,9 +15,10 @@ template <int dim>
 struct FreeSurface {
   /// phi on all stored cells [m]: negative in the liquid, extrapolated into solids.
   const CellField* distance = nullptr;
-  /// phi with the shift of the short-wave filter, of which surface tension takes the
-  /// curvature; null without tension.
-  const CellField* leading_distance = nullptr;
+  /// Curvature where the surface, with the shift of the short-wave filter, crosses the line from
+  /// the centre of a wet cell to that of the dry one beside it, at the part `place` of the way
+  /// [1/m]; empty without tension. Local.
+  std::function<double(int wet, int axis, int side, double place)> curvature;
   /// Part of the way from the centre of a wet cell to that of a dry neighbour at which the surface
   /// is, in (0, 1]. Local.
   std::function<double(int wet, int dry)> crossing;

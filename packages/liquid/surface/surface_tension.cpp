@@ -208,7 +208,6 @@ Momentum<dim> push_surface(const MacDomain<dim>& domain, const MacGeometry<dim>&
                            FaceField<dim>& velocity) {
   const TiledGrid<dim>& grid = domain.grid;
   const auto& cells = geometry.state.cells;
-  const CellField& phi = *surface.leading_distance;
   Momentum<dim> impulse;
   for (int axis = 0; axis < dim; ++axis) {
     FaceMoments<dim> moments(grid, axis);
@@ -224,7 +223,7 @@ Momentum<dim> push_surface(const MacDomain<dim>& domain, const MacGeometry<dim>&
       const bool is_above = is_dry(upper);
       const int wet = is_above ? lower : upper, dry = is_above ? upper : lower;
       const double place = surface.at_true_place ? surface.crossing(wet, dry) : 1;
-      const double kappa = curvature(domain, phi, wet, axis, is_above ? 1 : 0, place);
+      const double kappa = surface.curvature(wet, axis, is_above ? 1 : 0, place);
       const double push = (is_above ? -1 : 1) * dt * tension * kappa;
       const double change = push * geometry.face_table(axis, face).gradient;
       velocity[axis][face] += change;

@@ -47,7 +47,7 @@ void MacLiquid<dim>::bound_pressure(CellField& pressure) const {
     if (tension > 0) {
       const int face = end == 0 ? wet : dry;
       const double place = 1 / flow_.geometry.face_table(axis, face).distance_factor;
-      value += tension * curvature(flow_.domain, *surface.leading_distance, wet, axis, end, place);
+      value += tension * surface.curvature(wet, axis, end, place);
     }
     return value;
   };
