@@ -19,10 +19,6 @@ class FixedInterface : public InterfaceModel<dim> {
         [&](int cell) { distance_[cell] = steepness * distance(grid.center(cell)); });
   }
   static inline double steepness = 1;  ///< steepness of phi; it is no distance if not 1
-  std::optional<double> curvature(int, int, int, double, const CellField&) const override {
-    return given_curvature;
-  }
-  static inline std::optional<double> given_curvature;  ///< none: it is that of phi [1/m]
   void advance(const InterfaceStep<dim>&) override {}
   const CellField& distance() const override { return distance_; }
   int band(double) const override { return 4; }
