@@ -115,7 +115,8 @@ class Scenes(unittest.TestCase):
         self.assertEqual(found["Coupling", "flux"][0], with_type("flux"))
         self.assertEqual(found["Coupling", "mixed face"][0], [scene for scene in scenes if scene not in with_type("flux")])
         self.assertEqual(found["Free Surface/Interface", "particle level set"][0],
-                         [scene for scene in scenes if '"Free Surface"' in texts[scene] and scene not in with_type("level set")])
+                         [scene for scene in scenes if '"Free Surface"' in texts[scene]
+                          and scene not in with_type("level set") + with_type("volume of fluid")])
         studies = [path.name for path in found["Solver/Strategy", "paper"][1]]
         self.assertIn("density-ratio.xml", studies)
 
