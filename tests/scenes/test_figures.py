@@ -86,9 +86,11 @@ class Balls(unittest.TestCase):
                 below, above = (below, middle) if is_light else (middle, above)
             return level - below + radius
 
-        heights = [run.of(f"Ball {density}", "y", 2).mean() for density in (100, 500, 900)]
-        for density, height in zip((100, 500, 900), heights):
-            self.assertAlmostEqual(height, floating(density), delta=.05, msg=f"{density} kg/m^3")  # 0.4 cells
+        for density in (100, 500, 900):
+            swing = run.of(f"Ball {density}", "y", 2)
+            # Their mean is no middle: one that goes under turns slowly there.
+            middle = (swing.max() + swing.min()) / 2
+            self.assertAlmostEqual(middle, floating(density), delta=.0625, msg=f"{density} kg/m^3")  # half a cell
         self.assertAlmostEqual(run.of("Ball 10000", "y", 2).mean(), radius, delta=.01)
 
 
