@@ -10,10 +10,11 @@ namespace {
 
 template <int dim>
 CouplingChoice choice(const SurfaceMesh<dim>& mesh, double spacing, bool closed = true,
-                      double density = 2) {
+                      double density = 2, bool rigid = true) {
   SolidDescription solid;
   solid.name = "Body";
   solid.closed = closed;
+  solid.rigid = rigid;
   solid.density = density;
   solid.simplex_end = static_cast<int>(mesh.simplices.size());
   solid.vertex_end = static_cast<int>(mesh.vertices.size());
@@ -30,6 +31,13 @@ TEST(AutomaticCoupling, TakesFluxesForThickSolids) {
 TEST(AutomaticCoupling, TakesWholeFacesForBodiesWithNextToNoMass) {
   EXPECT_EQ(choice(ball_surface<2>(1, 0.1), 0.5, true, 0.01).reason,
             "\"Body\" is 1e-05 times as dense as the fluid");
+}
+
+TEST(AutomaticCoupling, AsksMoreMassOfSolidsThatDeform) {
+  const SurfaceMesh<2> ball = ball_surface<2>(1, 0.1);
+  EXPECT_EQ(choice(ball, 0.5, true, 11, false).type, "flux");
+  EXPECT_EQ(choice(ball, 0.5, true, 2, false).reason,
+            "\"Body\" is 0.002 times as dense as the fluid");
 }
 
 TEST(AutomaticCoupling, TakesWholeFacesForThinSolids) {
