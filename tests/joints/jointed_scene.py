@@ -27,14 +27,15 @@ def vacuum(solids, joints, step, end, impulses="two halves", turn=LARGE):
     dimension = len(next(iter(solids.values()))["Position"])
     return {"Dimension": dimension, "Domain": {"Cells": (4,) * dimension}, "Fluid": {"Density": 1.},
             "Contact": {"Type": "none"}, "Solids": solids, "Joints": joints,
-            "Articulation": {"Impulses": impulses}, "Time": {"End": end, "Fixed Step": step, "Largest Turn": turn}, "Output": {"Frames": False}}
+            "Articulation": {"Impulses": impulses}, "Time": {"End": end, "Fixed Step": step, "Largest Turn": turn, "Order in Time": 1}, "Output": {"Frames": False}}
 
 
 def tank(solids, joints, coupling, viscosity=0., step=.01, end=.1, **articulation):
     scene = {"Dimension": 2, "Domain": {"Cells": (24, 24)},
              "Fluid": {"Density": 1000., "Viscosity": viscosity, "Gravity": (0., -9.8)},
              "Contact": {"Type": "none"}, "Coupling": {"Type": coupling}, "Solids": solids,
-             "Time": {"End": end, "Fixed Step": step}, "Output": {"Frames": False}, "Solver": {"Tolerance": 1e-11}}
+             # What joints tie takes this order; so does what it is compared with.
+             "Time": {"End": end, "Fixed Step": step, "Order in Time": 1}, "Output": {"Frames": False}, "Solver": {"Tolerance": 1e-11}}
     if joints:
         scene["Joints"] = joints
         scene["Time"]["Largest Turn"] = LARGE
