@@ -34,7 +34,7 @@ def tank(solids, joints, coupling, viscosity=0., step=.01, end=.1, **articulatio
     scene = {"Dimension": 2, "Domain": {"Cells": (24, 24)},
              "Fluid": {"Density": 1000., "Viscosity": viscosity, "Gravity": (0., -9.8)},
              "Contact": {"Type": "none"}, "Coupling": {"Type": coupling}, "Solids": solids,
-             # What joints tie takes this order; so does what it is compared with.
+             # Scenes with joints take this order, and so does the scene that one is compared with.
              "Time": {"End": end, "Fixed Step": step, "Order in Time": 1}, "Output": {"Frames": False}, "Solver": {"Tolerance": 1e-11}}
     if joints:
         scene["Joints"] = joints
