@@ -70,8 +70,8 @@ struct Lattice {
   }
 };
 
-/// Where a periodic domain shows the solids that it repeats: each at one place, a whole number of
-/// periods from its own, and at others where it reaches across a side.
+/// Places at which a periodic domain shows the solids that it repeats: each at one, a whole number
+/// of periods from its own, and at others where it reaches across a side.
 template <int dim>
 struct SolidImages {
   struct Image {

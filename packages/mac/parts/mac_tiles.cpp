@@ -68,13 +68,16 @@ void add_liquid(const TiledGrid<dim>& grid, const TileOwners& owners, const Cell
     if (place == owners.tiles.end() || *place != lattice.tile_number(coordinates))
       continue;  // a layer of faces above the domain
     const auto i = place - owners.tiles.begin();
-    GlobalIndex n_wet = 0, n_band = 0;
+    GlobalIndex n_cells = 0, n_wet = 0, n_band = 0;
     for (int k = 0; k < tile_volume<dim>; ++k) {
-      const double phi = distance[tile * tile_volume<dim> + k];
-      n_wet += phi < 0;
-      n_band += std::abs(phi) < band;
+      const int cell = tile * tile_volume<dim> + k;
+      if (!grid.in_domain(cell))
+        continue;  // what is kept there is no state: a restart has other values
+      ++n_cells;
+      n_wet += distance[cell] < 0;
+      n_band += std::abs(distance[cell]) < band;
     }
-    work.everywhere[i] = n_wet + (tile_volume<dim> - n_wet) / dry_cells_a_wet_one;
+    work.everywhere[i] = n_wet + (n_cells - n_wet) / dry_cells_a_wet_one;
     work.at_surfaces[i] += of_band_cell * n_band;
   }
 }
@@ -120,6 +123,7 @@ MigratingInterface<dim>* MacTiles<dim>::migrating_interface() {
 
 template <int dim>
 bool MacTiles<dim>::begin_step(double time, double dt, const std::function<double()>& solid_speed) {
+  step_is_counted_ = false;
   if (!moving_) {
     if (share_work())
       steps_since_regrid_ = 0;
@@ -339,6 +343,9 @@ void MacTiles<dim>::load(const CheckpointReader& checkpoint) {
 
 template <int dim>
 void MacTiles<dim>::accept() {
+  if (step_is_counted_)
+    return;
+  step_is_counted_ = true;
   steps_since_regrid_ = std::min(steps_since_regrid_ + 1, 2);
   steps_to_sharing_ = std::max(steps_to_sharing_ - 1, 0);
 }

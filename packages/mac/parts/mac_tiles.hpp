@@ -27,6 +27,7 @@ class MacTiles {
   void make_room(const Surface& surface);
   /// Rates of cells that were made one step ago are not those of a flow.
   bool are_new() const { return steps_since_regrid_ <= 1; }
+  /// Counts the step, once however many of its solves are accepted.
   void accept();
   /// Applies the pressure beyond the stored tiles to the faces at the band edge over dt, that of
   /// fluid at rest under this acceleration; returns this rank's impulse.
@@ -53,6 +54,7 @@ class MacTiles {
   std::optional<MovingTiles<dim>> moving_;  ///< none: all tiles exist, always
   TileOwners owners_;                       ///< owners of the tiles; empty: as at the start
   int steps_since_regrid_ = 2;              ///< accepted; 2: or more
+  bool step_is_counted_ = false;            ///< since it began
   int steps_to_sharing_ = 0;                ///< before work is next compared between ranks
   TileWork compared_work_;                  ///< work of this rank's tiles, then
   bool has_room_ = false;                   ///< for the first surface
