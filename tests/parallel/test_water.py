@@ -118,10 +118,11 @@ class Water(unittest.TestCase):
                         self.assertLessEqual(float(row[column]), 1e-10, column)
                 assert_close(runs[1][1], bodies, STATE, 1e-7)
                 assert_close(runs[1][0], history, FLUID, 1e-7)
-            again = shutil.copytree(Path(folder) / "2", Path(folder) / "again")
-            middle = sorted(again.glob("checkpoint-*.h5"))[0]
-            self.assertEqual(run(file, again, steps, 2, ("--restart", middle)), runs[2])
-            self.check_idle_restart(file, Path(folder), middle.name, runs[2])
+            middles = [path.name for path in sorted((Path(folder) / "2").glob("checkpoint-*.h5")) if f"{steps:06}" not in path.name]
+            for middle in middles:
+                again = shutil.copytree(Path(folder) / "2", Path(folder) / f"again from {middle}")
+                self.assertEqual(run(file, again, steps, 2, ("--restart", again / middle)), runs[2])
+            self.check_idle_restart(file, Path(folder), middles[0], runs[2])
 
     def check_idle_restart(self, file, folder, checkpoint, whole):
         """A run that has nothing left to do writes a checkpoint that others go on from."""
@@ -144,7 +145,7 @@ class Water(unittest.TestCase):
         self.check(2, "particle level set", "mixed face", 20)
 
     def test_level_set_with_fluxes(self):
-        self.check(2, "level set", "flux", 20)
+        self.check(2, "level set", "flux", 24)  # ranks share their work anew before step 21
 
     def test_volumes(self):
         self.check(2, "volume of fluid", "mixed face", 20)
