@@ -86,6 +86,30 @@ class Faucet(unittest.TestCase):
                     assert_close(runs[1][1], bodies, STATE, 1e-7)
 
 
+class DropInGas(unittest.TestCase):
+    def test_a_drop_that_tension_bends_is_the_same_on_any_ranks(self):
+        """A box of liquid that lies askew over tiles; its curvature is that of columns, which reach over the borders of ranks."""
+        box = {"Type": "box", "Lower": (.27, .3), "Upper": (.71, .66)}
+        text = xml("Scene", {
+            "Dimension": 2, "Domain": {"Cells": (48, 48)},
+            "Fluid": {"Density": 1000., "Viscosity": 1., "Phases": {"Gas": {"Density": 1., "Viscosity": .01}}, "Free Surface": {
+                "Interface": {"Type": "volume of fluid"}, "Surface Tension": 100., "Liquid": {"Drop": box}}},
+            "Solver": {"Tolerance": 1e-11}, "Time": {"End": 10., "Fixed Step": .002},
+            "Output": {"Frames": False, "Checkpoints": {"Interval": .008, "Count": 9}}})
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            file = folder / "scene.xml"
+            file.write_text(text)
+            runs = {}
+            for ranks in (1, 2, 3):
+                simulate(file, folder / str(ranks), "--steps", 12, ranks=ranks)
+                runs[ranks] = without_times(table(folder / str(ranks) / "history.csv"))
+                assert_close(runs[1], runs[ranks], ("fluid_kinetic_energy", "liquid_volume"), 1e-12)
+            again = shutil.copytree(folder / "2", folder / "again")
+            simulate(file, again, "--steps", 12, "--restart", sorted(again.glob("checkpoint-*.h5"))[0], ranks=2)
+            self.assertEqual(without_times(table(again / "history.csv")), runs[2])
+
+
 class Shares(unittest.TestCase):
     def test_each_rank_has_its_part_of_the_water(self):
         """A high tank with a little on its floor, in 4 by 16 tiles, of which 4 by 4 are wet."""
