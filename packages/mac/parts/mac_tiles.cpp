@@ -72,7 +72,7 @@ void add_liquid(const TiledGrid<dim>& grid, const TileOwners& owners, const Cell
     for (int k = 0; k < tile_volume<dim>; ++k) {
       const int cell = tile * tile_volume<dim> + k;
       if (!grid.in_domain(cell))
-        continue;  // what is kept there is no state: a restart has other values
+        continue;  // values kept there are no state: a restart has others
       ++n_cells;
       n_wet += distance[cell] < 0;
       n_band += std::abs(distance[cell]) < band;
