@@ -79,6 +79,25 @@ void for_each_cell(const Index<dim>& begin, const Index<dim>& end, Function f) {
 }  // namespace
 
 template <int dim>
+SolidDescription append_copy(const SolidDescription& solid, const Point<dim>& shift,
+                             SurfaceMesh<dim>& mesh) {
+  SolidDescription copy = solid;
+  copy.vertex_begin = static_cast<int>(mesh.vertices.size());
+  copy.simplex_begin = static_cast<int>(mesh.simplices.size());
+  for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
+    mesh.vertices.push_back(mesh.vertices[v] + shift);
+  for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
+    auto simplex = mesh.simplices[s];
+    for (int& vertex : simplex)
+      vertex += copy.vertex_begin - solid.vertex_begin;
+    mesh.simplices.push_back(simplex);
+  }
+  copy.vertex_end = static_cast<int>(mesh.vertices.size());
+  copy.simplex_end = static_cast<int>(mesh.simplices.size());
+  return copy;
+}
+
+template <int dim>
 SurfaceSnapshot<dim>::SurfaceSnapshot(SurfaceMesh<dim> mesh, std::vector<SolidDescription> solids,
                                       BoxOrder order, SolidImages<dim> images)
     : mesh_(std::move(mesh)), solids_(std::move(solids)), images_(std::move(images)) {
@@ -111,17 +130,8 @@ template <int dim>
 void SurfaceSnapshot<dim>::add_images() {
   solid_of_.assign(n_simplices(), -1);
   for (const auto& image : images_.others) {
-    const SolidDescription& solid = solids_[image.solid];
-    const int shift = static_cast<int>(mesh_.vertices.size()) - solid.vertex_begin;
-    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
-      mesh_.vertices.push_back(mesh_.vertices[v] + image.shift);
-    for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
-      auto simplex = mesh_.simplices[s];
-      for (int& vertex : simplex)
-        vertex += shift;
-      mesh_.simplices.push_back(simplex);
-      solid_of_.push_back(image.solid);
-    }
+    const SolidDescription copy = append_copy<dim>(solids_[image.solid], image.shift, mesh_);
+    solid_of_.resize(copy.simplex_end, image.solid);
   }
 }
 
@@ -307,6 +317,8 @@ SurfaceMesh<dim> SurfaceSnapshot<dim>::mesh_of_solid(int solid) const {
   return part;
 }
 
+template SolidDescription append_copy(const SolidDescription&, const Point<2>&, SurfaceMesh<2>&);
+template SolidDescription append_copy(const SolidDescription&, const Point<3>&, SurfaceMesh<3>&);
 template class SurfaceSnapshot<2>;
 template class SurfaceSnapshot<3>;
 

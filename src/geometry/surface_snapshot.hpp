@@ -98,6 +98,12 @@ struct SolidImages {
   }
 };
 
+/// Appends a copy of a solid's surface to the mesh that has it, moved by `shift`; returns the
+/// description of the copy.
+template <int dim>
+SolidDescription append_copy(const SolidDescription& solid, const Point<dim>& shift,
+                             SurfaceMesh<dim>& mesh);
+
 /// An immutable picture of all solids' surfaces at one instant, replicated on every rank, with the
 /// queries that everyone needs. Built once per geometry change; queries are const and thread-safe.
 /// Two snapshots of one step have the same simplices and differ in vertex positions only.

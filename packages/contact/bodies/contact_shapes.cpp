@@ -112,24 +112,8 @@ void ContactShapes<dim>::add_images() {
   if (images_.empty())
     return;
   with_images_ = system_.solids();
-  for (const auto& image : images_) {
-    SolidDescription solid = with_images_[image.solid];
-    const int first_vertex = static_cast<int>(mesh_.vertices.size());
-    const int first_simplex = static_cast<int>(mesh_.simplices.size());
-    for (int v = solid.vertex_begin; v < solid.vertex_end; ++v)
-      mesh_.vertices.push_back(mesh_.vertices[v] + image.shift);
-    for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
-      auto simplex = mesh_.simplices[s];
-      for (int& vertex : simplex)
-        vertex += first_vertex - solid.vertex_begin;
-      mesh_.simplices.push_back(simplex);
-    }
-    solid.vertex_begin = first_vertex;
-    solid.vertex_end = static_cast<int>(mesh_.vertices.size());
-    solid.simplex_begin = first_simplex;
-    solid.simplex_end = static_cast<int>(mesh_.simplices.size());
-    with_images_.push_back(solid);
-  }
+  for (const auto& image : images_)
+    with_images_.push_back(append_copy<dim>(with_images_[image.solid], image.shift, mesh_));
 }
 
 template <int dim>
