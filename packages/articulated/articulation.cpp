@@ -68,13 +68,16 @@ void Articulation<dim>::set_gains() {
                                    dofs_.first_rate + joint.first_rate);
       for (int k = 0; k < joint.q.size(); ++k) {
         CoordinateControl& control = joint.control.coordinates[k];
-        if (!control.natural_frequency)
+        if (!control.acts() && !control.natural_frequency)
           continue;
         const Eigen::Index c = first - basis.columns.begin() + k;
         double own = inertia(c, c);
         if (n_root > 0)
           own -= inertia.col(c).head(n_root).dot(
               root.solve(Eigen::VectorXd(inertia.col(c).head(n_root))));
+        control.inertia = own;
+        if (!control.natural_frequency)
+          continue;
         const double frequency = *control.natural_frequency;
         control.stiffness = frequency * frequency * own;
         control.damping = 2 * control.damping_ratio * frequency * own;
@@ -96,19 +99,26 @@ bool Articulation<dim>::any_acts() const {
                      [](const Joint<dim>& joint) { return joint.control.any_acts(); });
 }
 
+/// A kick has the spring at its place and dt^2/4 times its stiffness as a mass, and the mean of
+/// what the damper gives before and after. That rings where a spring is too stiff for the step:
+/// there both go over to those of the end of the step.
 template <int dim>
-ControlLaw Articulation<dim>::control(double time, double dt, bool moved) const {
+ControlLaw Articulation<dim>::control() const {
   ControlLaw all{Eigen::VectorXd::Zero(n_rates_), Eigen::VectorXd::Zero(n_rates_),
                  std::vector<char>(n_rates_, 0)};
-  ControlTimes times{time, dt};
-  if (options_.fully_implicit)
-    times.middle = 1;
-  else
-    times.implicit = moved ? 0.5 : 1;
   for (const Joint<dim>& joint : joints_) {
     if (!joint.control.any_acts())
       continue;
-    const ControlLaw law = control_law<dim>(joint.kind, joint.control, joint.at_begin, times);
+    TargetValue present = joint.at_kick;
+    ControlTimes times{begin_ + dt_ / 2, dt_ / 2, has_moved_ ? 0.5 : 1};
+    if (options_.fully_implicit || takes_kicks_) {
+      const double late = options_.fully_implicit ? 1 : unresolved_part(joint.control, dt_);
+      const double kick = takes_kicks_ && has_moved_ ? begin_ + dt_ : begin_;
+      times = {kick + late * dt_, (1 + late) * dt_ / 2, (1 + late) / 2};
+      if (late < 1)
+        present.q = advanced<dim>(joint.kind, present.q, (late - 1) * dt_ / 2 * present.rate);
+    }
+    const ControlLaw law = control_law<dim>(joint.kind, joint.control, present, times);
     all.constant.segment(joint.first_rate, law.constant.size()) = law.constant;
     all.slope.segment(joint.first_rate, law.slope.size()) = law.slope;
     std::copy(law.limited.begin(), law.limited.end(), all.limited.begin() + joint.first_rate);
@@ -118,8 +128,11 @@ ControlLaw Articulation<dim>::control(double time, double dt, bool moved) const 
 
 template <int dim>
 void Articulation<dim>::begin_step(double time, double dt) {
+  begin_ = time;
+  dt_ = dt;
+  has_moved_ = false;
   for (Joint<dim>& joint : joints_) {
-    joint.at_begin = {joint.q, rates_of(joint)};
+    joint.at_begin = joint.at_kick = {joint.q, rates_of(joint)};
     if (joint.control.any_given())
       joint.goal = given_motion<dim>(joint.kind, joint.control, joint.at_begin, time, dt);
   }
@@ -187,7 +200,10 @@ void Articulation<dim>::update_coordinates(const Eigen::VectorXd& change) {
     if (joint.first_rate >= 0)
       near = advanced<dim>(joint.kind, joint.q, change.segment(joint.first_rate, joint.q.size()));
     joint.q = coordinates(joint.kind, place_of(joint, poses).pose, near);
+    if (takes_kicks_)
+      joint.at_kick = {joint.q, rates_of(joint)};
   }
+  has_moved_ = true;
 }
 
 template class Articulation<2>;

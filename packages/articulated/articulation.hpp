@@ -46,6 +46,8 @@ class Articulation {
   std::vector<MotionBasis<dim>> motion_bases() const;
   /// The fastest turning jointed body [rad/s].
   double fastest_turn() const;
+  /// Steps are two kicks and a drift from now on.
+  void take_kicks() { takes_kicks_ = true; }
   /// Begins a step: keeps the coordinates of joints, and finds those that given joints will have.
   void begin_step(double time, double dt);
   /// q after a move in which the rates times dt were `change`.
@@ -56,9 +58,13 @@ class Articulation {
   Eigen::VectorXd rates_of(const Joint<dim>& joint) const;
   const std::vector<char>& given() const { return given_; }
   bool any_acts() const;  ///< springs and dampers
-  /// Springs and dampers in the step from `time` over dt, by rate: torque = constant - slope rate.
-  /// `moved`: after the bodies went to their places of its end.
-  ControlLaw control(double time, double dt, bool moved) const;
+  /// Springs and dampers of the present step or kick, by rate: torque = constant - slope rate.
+  /// Those of a step are those of its middle; dampers are implicit before the bodies move, and half
+  /// so after it. Fully implicit ones are those of the end.
+  ControlLaw control() const;
+  /// True after the bodies went to their places of the end of the step.
+  bool has_moved() const { return has_moved_; }
+  bool takes_kicks() const { return takes_kicks_; }
 
  private:
   void set_gains();
@@ -71,6 +77,8 @@ class Articulation {
   int n_rates_ = 0, n_dofs_ = 0;
   Eigen::VectorXd rates_;
   std::vector<char> given_;  ///< by rate
+  bool takes_kicks_ = false, has_moved_ = false;
+  double begin_ = 0, dt_ = 0;  ///< begin and length of the present step [s]
 };
 
 /// The ties between the bodies of an articulation.
@@ -132,10 +140,10 @@ class JointConstraints : public ConstraintModel,
 
   std::shared_ptr<Articulation<dim>> articulation_;
   Communicator comm_;
-  Eigen::VectorXd torque_, limit_torque_;  ///< by rate, of the last step
-  std::vector<char> limited_;              ///< likewise: by the largest torque
-  double dt_ = 0;                          ///< length of the last step [s]; 0: there was none
-  std::vector<char> two_halves_;           ///< by joint, likewise
+  Eigen::VectorXd impulse_, limit_impulse_;  ///< by rate, of the last step
+  std::vector<char> limited_;                ///< likewise: by the largest torque
+  double dt_ = 0;                            ///< length of the last step [s]; 0: there was none
+  std::vector<char> two_halves_;             ///< by joint, likewise
 };
 
 }  // namespace lockstep

@@ -164,18 +164,24 @@ int JointConstraints<dim>::largest_block() const {
 }
 
 template <int dim>
-void JointConstraints<dim>::take_note(const JointImpulses& impulses, double time, double dt) {
-  dt_ = dt;
-  torque_ = gather_rates(*impulses.at_end) / dt;
+void JointConstraints<dim>::take_note(const JointImpulses& impulses, double, double dt) {
+  const int n = articulation_->n_rates();
+  const ControlLaw springs = articulation_->control();
+  if (!articulation_->takes_kicks() || !articulation_->has_moved()) {
+    impulse_ = limit_impulse_ = Eigen::VectorXd::Zero(n);
+    limited_.assign(n, 1);
+    dt_ = 0;
+  }
+  dt_ += dt;
+  impulse_ += gather_rates(*impulses.at_end);
   if (!impulses.at_start.is_null())
-    torque_ += gather_rates(*impulses.at_start) / dt;
+    impulse_ += gather_rates(*impulses.at_start);
   // S1 takes none of the springs' impulses away from S2.
-  const ControlLaw springs = articulation_->control(time, dt, true);
-  torque_ += springs.constant - springs.slope.cwiseProduct(articulation_->rates());
-  limited_ = springs.limited;
-  limit_torque_ = Eigen::VectorXd::Zero(articulation_->n_rates());
+  impulse_ += dt * (springs.constant - springs.slope.cwiseProduct(articulation_->rates()));
+  for (int k = 0; k < n; ++k)
+    limited_[k] = limited_[k] && springs.limited[k] ? 1 : 0;
   for (const auto& [dof, impulse] : impulses.of_limits)
-    limit_torque_[dof - articulation_->dofs().first_rate] += impulse / dt;
+    limit_impulse_[dof - articulation_->dofs().first_rate] += impulse;
 }
 
 template <int dim>
@@ -200,8 +206,8 @@ std::vector<JointState> JointConstraints<dim>::states(double time) const {
       state.target = joint.control.free(k) ? state.q : target[k];
       state.at_limit = at_limit(joint.limits, joint.q, k);
       if (joint.first_rate >= 0 && dt_ > 0) {
-        state.torque = torque_[joint.first_rate + k];
-        state.limit_torque = limit_torque_[joint.first_rate + k];
+        state.torque = impulse_[joint.first_rate + k] / dt_;
+        state.limit_torque = limit_impulse_[joint.first_rate + k] / dt_;
         state.power = state.torque * (joint.q[k] - joint.at_begin.q[k]) / dt_;
       }
       states.push_back(state);

@@ -228,9 +228,9 @@ TargetValue given_motion(const JointKind& kind, const JointControl& control,
 template <int dim>
 ControlLaw control_law(const JointKind& kind, const JointControl& control,
                        const TargetValue& present, const ControlTimes& times) {
-  const double lead = times.middle * times.dt, middle = times.time + lead;
-  const Eigen::VectorXd way = way_to<dim>(kind, present.q, control.target_at(middle).q);
-  const Eigen::VectorXd wanted = rates_of<dim>(kind, control, middle);
+  const double lead = times.lead;
+  const Eigen::VectorXd way = way_to<dim>(kind, present.q, control.target_at(times.target).q);
+  const Eigen::VectorXd wanted = rates_of<dim>(kind, control, times.target);
   const double explicit_part = 1 - times.implicit;
   const Eigen::Index n = way.size();
   ControlLaw law{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), std::vector<char>(n, 0)};
@@ -250,6 +250,18 @@ ControlLaw control_law(const JointKind& kind, const JointControl& control,
     law.limited[k] = 1;
   }
   return law;
+}
+
+double unresolved_part(const JointControl& control, double dt) {
+  double largest = 0;
+  for (const CoordinateControl& one : control.coordinates) {
+    if (!one.acts())
+      continue;
+    const double decay = one.damping * dt / one.inertia;
+    largest = std::max(largest, one.stiffness * dt * dt / one.inertia + decay * decay);
+  }
+  const double ratio = largest / 16;
+  return ratio * ratio / (1 + ratio * ratio);
 }
 
 template JointControl read_control<2>(const ParameterList&, const std::string&, const JointKind&,

@@ -21,6 +21,7 @@ struct CoordinateControl {
   std::optional<double> natural_frequency;
   double damping_ratio = 1;
   double stiffness = 0, damping = 0;  ///< gains [N m/rad, N/m], times s
+  double inertia = 0;                 ///< inertia at the start, all other joints held [kg m^2, kg]
   double largest_torque = std::numeric_limits<double>::infinity();  ///< [N m, N]
   JointTarget own_target;  ///< target of this coordinate alone; null: it has that of the joint
 
@@ -68,15 +69,17 @@ struct ControlLaw {
 };
 /// Times in a step at which springs and dampers act.
 struct ControlTimes {
-  double time = 0, dt = 0;  ///< its begin and length [s]
-  double middle = 0.5;      ///< the part of it after which the spring is taken [1]
-  double implicit = 1;      ///< part of the damper [1]
+  double target = 0;    ///< when the target is taken [s]
+  double lead = 0;      ///< time for which the spring goes on from the present coordinates [s]
+  double implicit = 1;  ///< part of the damper [1]
 };
-/// Linearises springs and dampers over a step. Second order: the spring is that of the middle of
-/// the step; in S1 the damper is implicit, in S2 half of it. Fully implicit: both are those of the
-/// end.
+/// Linearises springs and dampers: those at the coordinates q + lead q', for the rates q' that a
+/// solve finds.
 template <int dim>
 ControlLaw control_law(const JointKind& kind, const JointControl& control,
                        const TargetValue& present, const ControlTimes& times);
+/// The part of springs and dampers that steps of dt do not resolve [0 to 1]: about 0 while both
+/// turn their joints slowly, 1/2 where a spring has a period of one and a half steps.
+double unresolved_part(const JointControl& control, double dt);
 
 }  // namespace lockstep

@@ -49,7 +49,7 @@ template <int dim>
 RCP<const LinearOperator> JointRates<dim>::implicit_force(double) const {
   if (!articulation_->any_acts())
     return Teuchos::null;
-  return diagonal(map_, -articulation_->control(begin_, step_dt_, moved_).slope);
+  return diagonal(map_, -articulation_->control().slope);
 }
 
 template <int dim>
@@ -57,7 +57,7 @@ void JointRates<dim>::explicit_momentum(double, double dt, Vector& momentum) con
   momentum.putScalar(0);
   if (!articulation_->any_acts() || !is_root(comm_))
     return;
-  const Eigen::VectorXd impulse = dt * articulation_->control(begin_, step_dt_, moved_).constant;
+  const Eigen::VectorXd impulse = dt * articulation_->control().constant;
   std::copy_n(impulse.data(), impulse.size(), momentum.getDataNonConst().begin());
 }
 
@@ -72,14 +72,6 @@ SolidWork JointRates<dim>::solid_work(double time, double dt, const Vector& velo
   apply(*implicit_force(dt), velocity, impulse, dt, 1);
   work.control = dot(impulse, mean);
   return work;
-}
-
-template <int dim>
-void JointRates<dim>::begin_step(double time, double dt) {
-  begin_ = time;
-  step_dt_ = dt;
-  moved_ = false;
-  articulation_->begin_step(time, dt);
 }
 
 template <int dim>
@@ -155,7 +147,6 @@ template <int dim>
 void JointRates<dim>::move(const Vector& velocity, double time, double dt) {
   articulation_->update_coordinates(dt * gather(velocity));
   time_ = time + dt;
-  moved_ = true;
 }
 
 template <int dim>

@@ -32,7 +32,8 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public Wor
   RCP<const LinearOperator> mass() const override { return mass_; }
   RCP<const LinearOperator> implicit_force(double dt) const override;
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
-  void begin_step(double time, double dt) override;
+  void leave_order_to_scheme() override { articulation_->take_kicks(); }
+  void begin_step(double time, double dt) override { articulation_->begin_step(time, dt); }
   Momentum<dim> external_impulse(double, double) const override { return {}; }
   SolidWork solid_work(double time, double dt, const Vector& velocity,
                        const Vector& mean) const override;
@@ -59,9 +60,7 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public Wor
   SurfaceMesh<dim> surface_;
   RCP<const Map> map_;
   RCP<const LinearOperator> mass_;
-  double time_;                     ///< time of the present positions [s]
-  double begin_ = 0, step_dt_ = 0;  ///< begin and length of the present step [s]
-  bool moved_ = false;              ///< in the present step
+  double time_;  ///< time of the present positions [s]
 };
 
 }  // namespace lockstep

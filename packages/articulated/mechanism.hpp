@@ -58,6 +58,7 @@ struct Joint {
   int first_rate = -1;   ///< among those of all joints; -1: it closes a loop and has none
   Eigen::VectorXd q;     ///< present coordinates
   TargetValue at_begin;  ///< coordinates and rates at the begin of the step
+  TargetValue at_kick;   ///< coordinates and rates where the present kick acts
   TargetValue goal;      ///< where given coordinates are at the step's end
 
   bool wants_rates() const { return control.any() || limits.any(); }

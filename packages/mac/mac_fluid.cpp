@@ -147,6 +147,8 @@ bool MacFluid<dim>::begin_step(double time, double dt, const std::function<doubl
 template <int dim>
 bool MacFluid<dim>::begin_advection_velocity(double dt) {
   begin_prediction();
+  if (flow_.advection_history)
+    flow_.advection_history->add(dt / 2, flow_.prediction);
   if (!flow_.history)
     return true;
   flow_.history->extrapolate(dt, flow_.prediction);
@@ -362,6 +364,11 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
     flow_.history->add_acceleration(dt / 2, start);
     transport.advect_faces(scheme, start, flow_.prediction);
     flow_.history->add_acceleration(-dt / 2, flow_.prediction);
+  } else if (flow_.advection_history) {
+    FaceField<dim> start = flow_.velocity;
+    flow_.advection_history->add(-dt / 2, start);
+    transport.advect_faces(scheme, start, flow_.prediction);
+    flow_.advection_history->begin(std::move(start), flow_.geometry.state, dt);
   } else {
     transport.advect_faces(scheme, flow_.velocity, flow_.prediction);
   }
@@ -391,6 +398,8 @@ void MacFluid<dim>::populate_uncovered(const MovingSurface<dim>& surface) {
     give_back_momentum(flow_);
   if (flow_.history)
     flow_.history->set_advected(flow_.prediction);
+  if (flow_.advection_history)
+    flow_.advection_history->end(flow_.prediction, flow_.geometry.state);
 }
 
 template <int dim>

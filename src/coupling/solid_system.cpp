@@ -424,6 +424,12 @@ void SolidSystem<dim>::find_reduction() {
 }
 
 template <int dim>
+void SolidSystem<dim>::leave_order_to_scheme() {
+  for (const auto& solid_model : models_)
+    solid_model->leave_order_to_scheme();
+}
+
+template <int dim>
 void SolidSystem<dim>::set_gravity(const Point<dim>& gravity) {
   for (const auto& solid_model : models_)
     solid_model->set_gravity(gravity);

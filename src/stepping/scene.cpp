@@ -35,10 +35,9 @@ void declare_time(ParameterList& scene, bool has_joints) {
       time, "Order in Time", 0, 0, 2,
       "Of the scheme that moves solids and fluid together. 1: the paper's, bodies move by a solve "
       "that is thrown away. 2: both solves of a step are kept, half of the forces act before the "
-      "bodies move and half after (kick, drift, kick): floating and falling rigid bodies lose none "
-      "of their motion to the step; no joints, soft solids or trapped gas. Advection then is of "
-      "second order, too, whatever that of \"Fluid\" says. Where nothing is free to move, 1. "
-      "0: 2 where it can be had, else 1.");
+      "bodies move and half after (kick, drift, kick): rigid bodies lose none of their motion to "
+      "the step, with joints too; no soft solids or trapped gas. Advection has the order that "
+      "\"Fluid\" says. Where nothing is free to move, 1. 0: 2 where it can be had, else 1.");
   declare_choice(
       time, "Pressure Correction", "rotational", {"rotational", "incremental", "non-incremental"},
       "Pressure of the last step in the viscous solve. rotational: with the correction by "

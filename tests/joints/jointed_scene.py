@@ -23,19 +23,24 @@ def joint(kind, solids, point, **more):
     return {"Type": kind, "Solids": solids, "Point": point, **more}
 
 
+def in_order(scene, order):
+    """The scene with steps of that order in time; they are of second order by default."""
+    scene["Time"]["Order in Time"] = order
+    return scene
+
+
 def vacuum(solids, joints, step, end, impulses="two halves", turn=LARGE):
     dimension = len(next(iter(solids.values()))["Position"])
     return {"Dimension": dimension, "Domain": {"Cells": (4,) * dimension}, "Fluid": {"Density": 1.},
             "Contact": {"Type": "none"}, "Solids": solids, "Joints": joints,
-            "Articulation": {"Impulses": impulses}, "Time": {"End": end, "Fixed Step": step, "Largest Turn": turn, "Order in Time": 1}, "Output": {"Frames": False}}
+            "Articulation": {"Impulses": impulses}, "Time": {"End": end, "Fixed Step": step, "Largest Turn": turn}, "Output": {"Frames": False}}
 
 
 def tank(solids, joints, coupling, viscosity=0., step=.01, end=.1, **articulation):
     scene = {"Dimension": 2, "Domain": {"Cells": (24, 24)},
              "Fluid": {"Density": 1000., "Viscosity": viscosity, "Gravity": (0., -9.8)},
              "Contact": {"Type": "none"}, "Coupling": {"Type": coupling}, "Solids": solids,
-             # Scenes with joints take this order, and so does the scene that one is compared with.
-             "Time": {"End": end, "Fixed Step": step, "Order in Time": 1}, "Output": {"Frames": False}, "Solver": {"Tolerance": 1e-11}}
+             "Time": {"End": end, "Fixed Step": step}, "Output": {"Frames": False}, "Solver": {"Tolerance": 1e-11}}
     if joints:
         scene["Joints"] = joints
         scene["Time"]["Largest Turn"] = LARGE

@@ -8,19 +8,19 @@ from joint_cases import ARM_INERTIA as INERTIA
 from joint_cases import motor_arm as arm
 from joint_cases import sprung_arm as spring
 from joint_cases import swimmer, swum
-from jointed_scene import joint, joints_of, run, summary_of, unseen_box, vacuum
+from jointed_scene import in_order, joint, joints_of, run, summary_of, unseen_box, vacuum
 
 class Control(unittest.TestCase):
     def test_a_spring_takes_the_joint_to_its_target(self):
         """Critically damped: (1 + t) e^-t of the way is left."""
-        for step, bound in ((.5, .005), (.25, .00135), (.125, .00033)):
-            last = joints_of(spring(step))["H"][-1]
+        for order, step, bound in ((1, .5, .005), (1, .25, .00135), (1, .125, .00033), (2, .5, .012), (2, .25, .003), (2, .125, .00075)):
+            last = joints_of(in_order(spring(step), order))["H"][-1]
             self.assertLess(abs(last["q"] - (1 - 3 * math.exp(-2))), bound)
 
     def test_fully_implicit_springs_are_of_first_order(self):
         errors = []
         for step in (.5, .25, .125):
-            scene = spring(step)
+            scene = in_order(spring(step), 1)
             scene["Joints"]["H"]["Point"] = (0., 0.)  # the middle of the arm: nothing but the spring acts
             scene["Articulation"]["Time Integration"] = "fully-implicit"
             found = joints_of(scene)["H"][-1]["q"]

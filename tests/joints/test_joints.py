@@ -9,18 +9,19 @@ import numpy as np
 from joint_cases import (BALL_CHAIN, BOX, CHAIN, CHAIN_JOINTS, CHAIN_MOMENT, WELDS, WHOLE, ball_chain, chain, chain_changes, chain_error,
                          chain_moment, cut_in_two, difference_of_halves, energies, parts, pivoted, square, square_end,
                          sprung_piston)
-from jointed_scene import joint, joints_of, run, summary_of, tank, vacuum
+from jointed_scene import in_order, joint, joints_of, run, summary_of, tank, vacuum
 
 class InVacuum(unittest.TestCase):
     def test_two_halves_are_of_second_order(self):
-        errors = [chain_error(run(chain(step))[1]) for step in (.1, .05, .025)]
-        self.assertLess(errors[0], .013)
-        for coarse, fine in zip(errors, errors[1:]):
-            self.assertGreater(math.log2(coarse / fine), 1.9)
+        for order in (1, 2):  # orders of the scheme of time, whose second has two halves of its own
+            errors = [chain_error(run(in_order(chain(step), order))[1]) for step in (.1, .05, .025)]
+            self.assertLess(errors[0], .013)
+            for coarse, fine in zip(errors, errors[1:]):
+                self.assertGreater(math.log2(coarse / fine), 1.9)
 
     def test_two_halves_keep_energy_and_momentum(self):
-        for step, bound in ((.1, .006), (.05, .00075)):
-            history, bodies = run(chain(step, end=10.))
+        for order, step, bound in ((1, .1, .006), (1, .05, .00075), (2, .1, .006), (2, .05, .00075)):
+            history, bodies = run(in_order(chain(step, end=10.), order))
             self.assertLess(np.abs(chain_changes(history)).max(), bound)
             self.assertAlmostEqual(chain_moment(bodies), CHAIN_MOMENT, delta=1e-12)
             self.assertLess(max(row["angular_momentum_error"] for row in history), 1e-12)
@@ -179,7 +180,7 @@ class InWater(unittest.TestCase):
         """In the first step; then their momenta are carried along differently."""
         for coupling in ("flux", "mixed face"):
             _, expected = run(pivoted(coupling))
-            for impulses, bound in (("two halves", 4.5e-5), ("end of step", 1e-13)):
+            for impulses, bound in (("two halves", 4.5e-5), ("end of step", 1e-8)):
                 history, bodies = run(pivoted(coupling, impulses))
                 self.assertAlmostEqual(bodies["Ball"][-1]["wz"], expected["Ball"][-1]["wz"], delta=bound)
                 self.assertLess(max(row["momentum_error"] for row in history), 1e-13)

@@ -94,7 +94,7 @@ double MacFlow<dim>::largest_speed() const {
 }
 
 template <int dim>
-void MacFlow<dim>::forget_history() {
+void MacFlow<dim>::take_kicks() {
   if (!history)
     return;
   const std::vector<StoredField> gone = history->fields();
@@ -105,6 +105,9 @@ void MacFlow<dim>::forget_history() {
   };
   fields.erase(std::remove_if(fields.begin(), fields.end(), is_gone), fields.end());
   history.reset();
+  advection_history.emplace(domain.grid);
+  for (StoredField& field : advection_history->fields())
+    fields.push_back(std::move(field));
 }
 
 template <int dim>

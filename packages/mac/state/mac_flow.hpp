@@ -6,6 +6,7 @@
 
 #include "liquid/liquid.hpp"
 #include "mac/pressure/pressure_operator.hpp"
+#include "mac/state/advection_history.hpp"
 #include "mac/state/mac_parameters.hpp"
 #include "mac/state/velocity_history.hpp"
 #include "staggered/state/stored_fields.hpp"
@@ -33,11 +34,12 @@ struct MacFlow {
 
   MacGeometry<dim> geometry;
   FaceField<dim> velocity, prediction;          ///< u^n, u*
-  std::optional<VelocityHistory<dim>> history;  ///< none: first order in time
-  CellField scaled_pressure;                    ///< p̂ of the last projection
-  CellField accepted_pressure;                  ///< p of the last accepted step [Pa]
-  std::vector<CellState> accepted_cells;        ///< states of the cells then
-  double accepted_step = 0;                     ///< its dt
+  std::optional<VelocityHistory<dim>> history;  ///< none: first order in time, or steps of kicks
+  std::optional<AdvectionHistory<dim>> advection_history;  ///< none: likewise, or the paper's steps
+  CellField scaled_pressure;                               ///< p̂ of the last projection
+  CellField accepted_pressure;                             ///< p of the last accepted step [Pa]
+  std::vector<CellState> accepted_cells;                   ///< states of the cells then
+  double accepted_step = 0;                                ///< its dt
   Point<dim> accepted_acceleration =
       Point<dim>::Zero();           ///< force per mass without scalars in that step [m/s^2]
   std::vector<StoredField> fields;  ///< all that are kept from step to step
@@ -57,7 +59,8 @@ struct MacFlow {
   /// Largest sum_a |u_a| of u^n [m/s]; looked for once. Collective.
   double largest_speed() const;
   void forget_speed() { largest_speed_.reset(); }
-  void forget_history();  ///< advection is of first order from now on. Local.
+  /// Where advection is of second order, it is so in steps of kicks from now on. Local.
+  void take_kicks();
 
   /// The fields and times. Loading finds the tiles already as they were. Collective.
   void save(CheckpointWriter& checkpoint) const;

@@ -8,13 +8,23 @@
 namespace lockstep {
 
 template <int dim>
-AdvectionReport AdvectionVelocity<dim>::make(const StepTime& step, const std::string& name,
-                                             bool is_projected, double negligible) {
-  auto& fluid = *components_.fluid;
-  auto& coupling = *components_.coupling;
-  const bool has_no_divergence = fluid.begin_advection_velocity(step.dt);
+AdvectionReport AdvectionVelocity<dim>::make(const StepTime& step, bool is_projected) {
+  const bool has_no_divergence = components_.fluid->begin_advection_velocity(step.dt);
   if (components_.solids->empty() && is_projected && has_no_divergence)
     return {};
+  return project(step, 0);
+}
+
+template <int dim>
+AdvectionReport AdvectionVelocity<dim>::make_from_kick(const StepTime& step, double negligible) {
+  components_.fluid->begin_prediction();
+  return project(step, negligible);
+}
+
+template <int dim>
+AdvectionReport AdvectionVelocity<dim>::project(const StepTime& step, double negligible) {
+  auto& fluid = *components_.fluid;
+  auto& coupling = *components_.coupling;
   fluid.set_coupled_velocity(coupling.effective_velocity(*components_.solids));
   CoupledSolution solution;
   solution.rhs.pressure = make_vector(fluid.pressure_map());
@@ -24,7 +34,7 @@ AdvectionReport AdvectionVelocity<dim>::make(const StepTime& step, const std::st
   const double incompatibility = relative_part_removed(blocks.null_space, *solution.rhs.pressure);
   solution.unknowns.pressure = make_vector(fluid.pressure_map());
   components_.strategy->prepare(blocks);
-  SolveRequest request = solve_request(fluid, name, tolerance_, step, step.dt);
+  SolveRequest request = solve_request(fluid, "F2", tolerance_, step, step.dt);
   request.negligible_pressure_residual = std::max(request.negligible_pressure_residual, negligible);
   gas_.solve_advection(step.dt, blocks, request, solution);
   gas_.project(*solution.unknowns.pressure, solution.gas_pressure);

@@ -20,13 +20,16 @@ class AdvectionVelocity {
       : components_(components), system_(system), gas_(components), tolerance_(tolerance) {}
 
   /// Leaves u_ADV in u*; the solids have moved. `is_projected`: u^n has no divergence on the
-  /// present cells. `negligible`: 2-norm of a divergence that may stay [m^dim/s]. Throws
-  /// SolveError. Collective.
-  AdvectionReport make(const StepTime& step, const std::string& name, bool is_projected,
-                       double negligible = 0);
+  /// present cells. Throws SolveError. Collective.
+  AdvectionReport make(const StepTime& step, bool is_projected);
+  /// As `make`, of the velocity that the first kick gave. `negligible`: 2-norm of a divergence that
+  /// may stay [m^dim/s].
+  AdvectionReport make_from_kick(const StepTime& step, double negligible);
   double tolerance() const { return tolerance_; }
 
  private:
+  AdvectionReport project(const StepTime& step, double negligible);
+
   Components<dim>& components_;
   CoupledSystem<dim>& system_;
   TrappedGas<dim> gas_;

@@ -143,14 +143,15 @@ ContactReport<dim> CoupledSolve<dim>::contact_before_solve(const StepContext<dim
 template <int dim>
 MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& context,
                                                       const SolidMomentum<dim>& solids,
-                                                      const RCP<const Vector>& drag) {
+                                                      const RCP<const Vector>& drag,
+                                                      const BlockVector* nearby) {
   constexpr double round_off = 1e-9;
   const auto momentum = rcp(new Vector(*solids.momentum, Teuchos::Copy));
   MotionWithContacts<dim> end;
   if (holds_contacts()) {
     if (!drag.is_null())
       momentum->update(1, *drag, 1);
-    MotionWithContacts<dim> held = converge_with_contacts(context, momentum);
+    MotionWithContacts<dim> held = converge_with_contacts(context, momentum, nearby);
     end.solution = held.solution;
     end.contact = held.contact;
     if (held.contact.n_contacts > 0)
@@ -168,7 +169,7 @@ MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& co
     }
     if (!drag.is_null())
       momentum->update(1, *drag, 1);
-    end.solution = converge(context, momentum);
+    end.solution = converge(context, momentum, nearby);
   }
   if (end.solution.incompatibility > round_off) {
     const double time = context.step.end();

@@ -69,12 +69,13 @@ class CoupledSolve {
   /// holds, by their response R. Collective.
   RCP<Vector> reactions_to_contacts(const StepContext<dim>& context,
                                     const MotionWithContacts<dim>& motion) const;
-  /// The end of the step. `drag`: viscous impulse on the solids; null: none. Throws SolveError if
-  /// what is prescribed has no solution, but for what the grid makes of the solids' shapes.
-  /// Collective.
+  /// The end of the step. `drag`: viscous impulse on the solids; null: none; `nearby`: see `solve`.
+  /// Throws SolveError if what is prescribed has no solution, but for what the grid makes of the
+  /// solids' shapes. Collective.
   MotionWithContacts<dim> velocities(const StepContext<dim>& context,
                                      const SolidMomentum<dim>& solids,
-                                     const RCP<const Vector>& drag);
+                                     const RCP<const Vector>& drag,
+                                     const BlockVector* nearby = nullptr);
   /// u* -= M^-1 G p, and u*_F = W V; `viscous_pressure`: what the pressure for the next step has
   /// besides; null: nothing. Collective.
   void project(const CoupledSolution& solution, const RCP<const Vector>& viscous_pressure);

@@ -36,6 +36,12 @@ void FluidTransport<dim>::begin_prediction() {
   reset_unseen_faces();
 }
 
+template <int dim>
+void FluidTransport<dim>::begin_kick(const StepTime& step) {
+  components_.fluid->begin_advection_velocity(step.dt);
+  reset_unseen_faces();
+}
+
 /// A mixed face that no fluid cell sees holds solid velocity, not stale fluid: W V^n, before
 /// forces.
 template <int dim>

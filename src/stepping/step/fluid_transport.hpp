@@ -21,6 +21,9 @@ class FluidTransport {
   bool make_room(const StepTime& step);
   /// u* = u^n, where no fluid sees a mixed face W V^n. Collective.
   void begin_prediction();
+  /// As `begin_prediction`, with what advection makes of u^n up to the middle of the step, as far
+  /// as the fluid knows it. Collective.
+  void begin_kick(const StepTime& step);
   /// u* = u^n along the rays of u_ADV, to the present positions of the solids, at which the
   /// geometry is frozen. Collective.
   void carry(const StepTime& step);

@@ -4,7 +4,8 @@
 //   1  kick   u* = u^n + dt/2 (g + nu lap u*), then A p - B V = -G^T u*,
 //             B^T p + C V = M_S V^n + dt/2 f + W^T M_F u*_F;  u^{n+1/2} = u* - M^-1 G p, V^{n+1/2}
 //             = V; contacts act on V: gap + dt J_n V >= 0
-//   2  drift  x^{n+1} = x^n + dt V^{n+1/2}; bodies turn as their angular momenta have it
+//   2  drift  x^{n+1} = x^n + dt V^{n+1/2}; bodies turn as their angular momenta have it. Joints
+//             are closed at x^{n+1} by impulses of 1 (RATTLE), which then is solved anew
 //   3         u_ADV = u^{n+1/2}, free of divergence with (x^{n+1} - x^n) / dt; u^{n+1/2}, scalars
 //             and the free surface are carried along it
 //   4  kick   as 1, at x^{n+1}: u^{n+1}, V^{n+1}
@@ -63,6 +64,8 @@ StepReport<dim> joined(const StepReport<dim>& first, StepReport<dim> report) {
   add_impulses(first.contact_impulse, report.contact_impulse);
   const ContactReport<dim> drift = report.contact_position;
   report.contact_position = first.contact_velocity;
+  report.contact_position.n_contacts =
+      std::max(first.contact_velocity.n_contacts, report.contact_velocity.n_contacts);
   report.contact_position.n_crossings = drift.n_crossings;
   report.contact_position.deepest_overlap =
       std::max(drift.deepest_overlap, first.contact_velocity.deepest_overlap);
@@ -87,6 +90,48 @@ StageResults<dim> kick(StepParts<dim>& parts, const StepContext<dim>& context) {
   return stages;
 }
 
+/// The first kick of a step, its context and the path that follows from it.
+template <int dim>
+struct FirstKick {
+  StepContext<dim> context;
+  StageResults<dim> stages;
+  SolidPath<dim> path;          ///< empty without joints
+  RCP<const Vector> left_over;  ///< impulse that joints have for the second kick; null: none
+};
+
+/// The first kick of solids with joints: it gives them, and the fluid, the velocities with which
+/// the joints are closed at the end of the step. These are means over the way on which the bodies
+/// turn; the impulse that makes them such is taken away again by the second kick.
+template <int dim>
+FirstKick<dim> kick_with_joints(StepParts<dim>& parts, StepContext<dim> context) {
+  const auto& solids = *parts.components.solids;
+  RCP<const Vector> correction = parts.solid_forces.midpoint_correction(context.dt);
+  context.joints.given = correction;
+  StageResults<dim> stages = kick(parts, context);
+  const auto drift = [&] {
+    return parts.positions.closed_drift(context, *stages.end.solution.velocity, *correction);
+  };
+  ClosedDrift<dim> closed = drift();
+  if (!closed.motion.constraint_error.is_null()) {
+    const ScopedStage timed(parts.timers, context.solve);
+    const MotionWithContacts<dim> first = stages.end;
+    correction = closed.motion.correction;
+    context.joints.given = correction;
+    context.constraints =
+        solids.constraints(context.step.begin, context.step.end(), closed.motion.constraint_error);
+    stages.solids = parts.solid_forces.momentum(context);
+    stages.end = parts.solve.velocities(
+        context, stages.solids, stages.friction.viscous.solid_impulse, &first.solution.unknowns);
+    stages.end.solution.report.add_work(first.solution.report);
+    closed = drift();
+  }
+  const auto left_over = rcp(new Vector(*correction, Teuchos::Copy));
+  left_over->scale(-1);
+  if (!closed.motion.later_impulse.is_null())
+    left_over->update(1, *closed.motion.later_impulse, 1);
+  return {context, stages, closed.path, left_over};
+}
+
 }  // namespace
 
 template <int dim>
@@ -96,8 +141,6 @@ std::string hindrance_to_kick_drift_kick(const Components<dim>& components) {
       return fmt::format("\"{}\" deforms, but the second order in time is one of rigid bodies",
                          solid.name);
   }
-  if (components.solids->joints())
-    return "The second order in time knows no joints, which have one of their own";
   return components.fluid->gas() ? "The second order in time knows no trapped gas" : "";
 }
 
@@ -115,26 +158,32 @@ StepReport<dim> kick_drift_kick(StepParts<dim>& parts, const StepTime& step,
                         dt / 2, false, solids.constraints(step.begin, step.end())};
   half.takes_drops = false;
   double divergence = 0;  // before the first kick took it away
+  SolidPath<dim> path;
+  StartImpulse joints;
   const StepReport<dim> first = run("kick", [&] {
-    parts.transport.begin_prediction();
-    const StageResults<dim> stages = kick(parts, half);
-    divergence = stages.end.solution.rhs.pressure->norm2();
-    return parts.finish(half, stages);
+    parts.transport.begin_kick(step);
+    const FirstKick<dim> found = solids.joints() ? kick_with_joints(parts, half)
+                                                 : FirstKick<dim>{half, kick(parts, half), {}, {}};
+    path = found.path;
+    joints.given = found.left_over;
+    divergence = found.stages.end.solution.rhs.pressure->norm2();
+    return parts.finish(found.context, found.stages);
   });
   const StepTime rest{step.begin, dt, dt / 2, step.number};
   parts.audit.begin(rest);
-  const SolidPath<dim> path = run("solid motion", [&] {
-    const SolidPath<dim> found = parts.positions.drift(half);
-    solids.move(*found.velocity, step.begin, dt);
-    return found;
+  run("solid motion", [&] {
+    if (path.velocity.is_null())
+      path = parts.positions.drift(half);
+    solids.move(*path.velocity, step.begin, dt);
   });
   // A divergence that the tolerance of the first kick has left is no work for F2.
   const AdvectionReport advection = run("F2", [&] {
-    return parts.advection.make(rest, "F2", true, parts.advection.tolerance() * divergence);
+    return parts.advection.make_from_kick(rest, parts.advection.tolerance() * divergence);
   });
   run("F3 advection", [&] { parts.transport.carry(rest); });
   const StepContext<dim> whole{rest,   "S2",  step.begin + dt / 2,
-                               dt / 2, false, solids.constraints(step.end(), step.end())};
+                               dt / 2, false, solids.constraints(step.end(), step.end()),
+                               joints};
   return run("kick", [&] {
     StageResults<dim> stages = kick(parts, whole);
     stages.advection = advection;

@@ -6,7 +6,7 @@
 namespace lockstep {
 
 /// Says what keeps a scene from steps of `kick_drift_kick`, a sentence without its end: deforming
-/// solids, joints or trapped gas. Empty: nothing. Local.
+/// solids or trapped gas. Empty: nothing. Local.
 template <int dim>
 std::string hindrance_to_kick_drift_kick(const Components<dim>& components);
 

@@ -50,7 +50,7 @@ StepReport<dim> paper_step(StepParts<dim>& parts, const StepTime& step, const St
   run.pause();
   stages.path = parts.positions.find(half, stages.start.viscous.solid_impulse);  // S1
   run("solid motion", [&] { solids.move(*stages.path.velocity, step.begin, step.dt); });
-  stages.advection = run("F2", [&] { return parts.advection.make(step, "F2", is_projected); });
+  stages.advection = run("F2", [&] { return parts.advection.make(step, is_projected); });
   run("F3 advection", [&] {
     parts.transport.carry(step);
     parts.audit.end_transport(step);

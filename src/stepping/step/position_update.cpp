@@ -211,6 +211,22 @@ SolidPath<dim> PositionUpdate<dim>::drift(const StepContext<dim>& context) {
   return path;
 }
 
+template <int dim>
+ClosedDrift<dim> PositionUpdate<dim>::closed_drift(const StepContext<dim>& context,
+                                                   const Vector& velocity,
+                                                   const Vector& correction) {
+  auto& solids = *components_.solids;
+  const StepTime& step = context.step;
+  const auto moved = rcp(new Vector(velocity, Teuchos::Copy));
+  ClosedDrift<dim> drift;
+  if (components_.contact)
+    drift.path.contact = components_.contact->resolve(
+        solids, ContactPhase::position, step.dt, *moved, joint_response<dim>(solids, context.dt));
+  drift.motion = closed_flight(*solids.joints(), step, correction, velocity, *moved);
+  drift.path.velocity = moved;
+  return drift;
+}
+
 template class PositionUpdate<2>;
 template class PositionUpdate<3>;
 

@@ -18,6 +18,13 @@ struct SolidPath {
   double stretch_beyond_limit = 0;  ///< see SolidOutput
 };
 
+/// A path on which joints stay closed, and what that asks of the solve before it.
+template <int dim>
+struct ClosedDrift {
+  SolidPath<dim> path;
+  ClosedFreeMotion motion;
+};
+
 /// Finds the velocity that moves the solids over a step: from a coupled solve, changed so that
 /// elements keep their limits of strain, closed regions their volume, contacts their gaps and
 /// joints their bodies.
@@ -33,6 +40,10 @@ class PositionUpdate {
   /// The path of rigid solids that go on with the velocity they have: they turn as their angular
   /// momenta have it, and what overlaps is pushed out. Moves nothing. Collective.
   SolidPath<dim> drift(const StepContext<dim>& context);
+  /// As `drift`, of solids with joints that a solve gave `velocity`, with `correction` among its
+  /// impulses; what overlaps is pushed out, then the joints are closed. Collective.
+  ClosedDrift<dim> closed_drift(const StepContext<dim>& context, const Vector& velocity,
+                                const Vector& correction);
 
  private:
   /// A path with what closing its joints asks of it.

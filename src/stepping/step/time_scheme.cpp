@@ -72,8 +72,10 @@ TimeScheme<dim>::TimeScheme(Components<dim>& components, const StepOptions& opti
     : parts_(components, options, start_time, timers),
       is_of_second_order_(takes_second_order(components, options.order)),
       time_(start_time) {
-  if (is_of_second_order_)
-    components.fluid->leave_order_to_scheme();
+  if (!is_of_second_order_)
+    return;
+  components.fluid->leave_order_to_scheme();
+  components.solids->leave_order_to_scheme();
 }
 
 template <int dim>
