@@ -245,16 +245,14 @@ void MacTiles<dim>::rest_at_band_edge() {
       if (lower >= 0 && !rim[lower])
         continue;
       flow_.velocity[axis][cell] = 0;
-      if (flow_.history)
-        for (const StoredField& field : flow_.history->fields())
-          (*field.components[axis])[cell] = 0;
+      for (const StoredField& field : flow_.rates())
+        (*field.components[axis])[cell] = 0;
     }
   });
   flow_.domain.full_halo.fill(flow_.velocity);
-  if (flow_.history)
-    for (const StoredField& field : flow_.history->fields())
-      for (CellField* component : field.components)
-        flow_.domain.full_halo.fill(*component);
+  for (const StoredField& field : flow_.rates())
+    for (CellField* component : field.components)
+      flow_.domain.full_halo.fill(*component);
   for (Scalar& scalar : flow_.scalars.all())
     flow_.domain.full_halo.fill(scalar.values);
 }

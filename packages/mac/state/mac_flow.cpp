@@ -26,7 +26,7 @@ MacFlow<dim>::MacFlow(const ParameterList& fluid, const ParameterList& box,
   fields = {stored_faces<dim>("velocity", velocity)};
   if (parameters.order_in_time == 2) {
     history.emplace(domain.grid);
-    for (StoredField& field : history->fields())
+    for (StoredField& field : rates())
       fields.push_back(std::move(field));
   }
   for (Scalar& scalar : scalars.all())
@@ -94,6 +94,13 @@ double MacFlow<dim>::largest_speed() const {
 }
 
 template <int dim>
+std::vector<StoredField> MacFlow<dim>::rates() {
+  if (history)
+    return history->fields();
+  return advection_history ? advection_history->fields() : std::vector<StoredField>();
+}
+
+template <int dim>
 void MacFlow<dim>::take_kicks() {
   if (!history)
     return;
@@ -106,7 +113,7 @@ void MacFlow<dim>::take_kicks() {
   fields.erase(std::remove_if(fields.begin(), fields.end(), is_gone), fields.end());
   history.reset();
   advection_history.emplace(domain.grid);
-  for (StoredField& field : advection_history->fields())
+  for (StoredField& field : rates())
     fields.push_back(std::move(field));
 }
 

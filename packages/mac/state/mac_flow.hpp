@@ -59,6 +59,8 @@ struct MacFlow {
   /// Largest sum_a |u_a| of u^n [m/s]; looked for once. Collective.
   double largest_speed() const;
   void forget_speed() { largest_speed_.reset(); }
+  /// Returns the rates of change that advection of second order keeps; none: of first order. Local.
+  std::vector<StoredField> rates();
   /// Where advection is of second order, it is so in steps of kicks from now on. Local.
   void take_kicks();
 
