@@ -99,34 +99,48 @@ struct FirstKick {
   RCP<const Vector> left_over;  ///< impulse that joints have for the second kick; null: none
 };
 
+/// A correction without what belongs to bodies whose joints could not be closed; null: none is
+/// left. Their momenta would keep some of it through the turns that kept them open.
+RCP<const Vector> of_closed(const ClosedFreeMotion& motion) {
+  if (motion.correction.is_null() || motion.at_end.is_null())
+    return motion.correction;
+  const auto kept = rcp(new Vector(*motion.correction, Teuchos::Copy));
+  kept->elementWiseMultiply(-1, *motion.at_end, *motion.correction, 1);
+  return kept;
+}
+
 /// The first kick of solids with joints: it gives them, and the fluid, the velocities with which
 /// the joints are closed at the end of the step. These are means over the way on which the bodies
 /// turn; the impulse that makes them such is taken away again by the second kick.
 template <int dim>
 FirstKick<dim> kick_with_joints(StepParts<dim>& parts, StepContext<dim> context) {
   const auto& solids = *parts.components.solids;
-  RCP<const Vector> correction = parts.solid_forces.midpoint_correction(context.dt);
+  const RCP<const Vector> correction = parts.solid_forces.midpoint_correction(context.dt);
   context.joints.given = correction;
   StageResults<dim> stages = kick(parts, context);
   const auto drift = [&] {
-    return parts.positions.closed_drift(context, *stages.end.solution.velocity, *correction);
+    const RCP<const Vector>& given = context.joints.given;
+    const RCP<const Vector> none = given.is_null() ? make_vector(solids.map()) : given;
+    return parts.positions.closed_drift(context, *stages.end.solution.velocity, *none);
   };
   ClosedDrift<dim> closed = drift();
-  if (!closed.motion.constraint_error.is_null()) {
+  const RCP<const Vector> error = closed.motion.constraint_error;
+  if (!error.is_null() || correction->normInf() > 0) {
     const ScopedStage timed(parts.timers, context.solve);
     const MotionWithContacts<dim> first = stages.end;
-    correction = closed.motion.correction;
-    context.joints.given = correction;
-    context.constraints =
-        solids.constraints(context.step.begin, context.step.end(), closed.motion.constraint_error);
+    context.joints.given = of_closed(closed.motion);
+    if (!error.is_null())
+      context.constraints = solids.constraints(context.step.begin, context.step.end(), error);
     stages.solids = parts.solid_forces.momentum(context);
     stages.end = parts.solve.velocities(
         context, stages.solids, stages.friction.viscous.solid_impulse, &first.solution.unknowns);
     stages.end.solution.report.add_work(first.solution.report);
-    closed = drift();
+    if (!error.is_null())
+      closed = drift();
   }
-  const auto left_over = rcp(new Vector(*correction, Teuchos::Copy));
-  left_over->scale(-1);
+  const auto left_over = make_vector(solids.map());
+  if (!context.joints.given.is_null())
+    left_over->update(-1, *context.joints.given, 0);
   if (!closed.motion.later_impulse.is_null())
     left_over->update(1, *closed.motion.later_impulse, 1);
   return {context, stages, closed.path, left_over};
