@@ -52,7 +52,7 @@ void ExplicitElasticity<dim>::update_largest_stable_step() {
     if (longest < largest_stable_step_.dt)
       largest_stable_step_ = {
           longest, "stiffest element of " + body.name,
-          "No element bounds it with \"Time Integration\" = second-order of that solid, the default."};
+          "No element bounds it with \"Time Integration\" = fully-implicit of that solid."};
   }
 }
 
