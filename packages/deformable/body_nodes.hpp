@@ -12,7 +12,7 @@ namespace lockstep {
 struct SoftBody {
   std::string name;
   bool closed = true, consistent_mass = false;
-  TimeIntegration integration = TimeIntegration::second_order;
+  TimeIntegration integration = TimeIntegration::fully_implicit;
   int most_sub_steps = 1;
   double mass = 0, measure = 0;      ///< [kg]; volume (cloth: area) as meshed
   double fluid_mass = 0;             ///< mass of fluid that it carries along, about [kg]

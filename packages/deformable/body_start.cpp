@@ -134,14 +134,14 @@ void declare_body_start(ParameterList& list) {
                    "Rayleigh's factor of the stiffness at rest [s]: a mode of angular frequency w "
                    "has w/2 times this of critical damping.");
   declare_choice(
-      list, "Time Integration", "second-order",
+      list, "Time Integration", "fully-implicit",
       {"explicit", "semi-implicit", "fully-implicit", "second-order"},
       "explicit: all forces at the present state. semi-implicit: elastic forces at the "
       "present positions, implicit damping. fully-implicit: both linearised and solved "
       "together with the fluid; stable at any step, but of first order: the energy of a mode of "
       "angular frequency w falls by 3/2 (w dt)^2 of itself a step. second-order: the same with the "
-      "elastic forces of the middle of the step, where it falls by (w dt)^4/8 while w dt is small. "
-      "The step of explicit and semi-implicit bodies is bounded by "
+      "elastic forces of the middle of the step, where it falls by (w dt)^4/8 while w dt is small; "
+      "for free vibrations and waves. The step of explicit and semi-implicit bodies is bounded by "
       "the stiffest element.");
   declare_at_least(
       list, "Most Sub-Steps", 1, 1,

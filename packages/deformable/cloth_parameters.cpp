@@ -172,12 +172,10 @@ DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& lis
     body.mass_elements.nodes.insert(body.mass_elements.nodes.end(), simplex.begin(), simplex.end());
   }
   read_body_start<dim>(list, mesh.vertices, body);
-  if (body.density == 0 && list.getEntry("Time Integration").isDefault())
-    body.integration = TimeIntegration::fully_implicit;
   check_input(
       body.density > 0 || body.integration == TimeIntegration::fully_implicit,
       "The cloth \"{}\" has no mass (\"Surface Density\" is 0), so that no explicit force may "
-      "act on it. Set its \"Time Integration\" to fully-implicit, or leave it out.",
+      "act on it. Set its \"Time Integration\" to fully-implicit, the default.",
       name);
   check_input(body.density > 0 || body.limited_edges.empty(),
               "The cloth \"{}\" has no mass (\"Surface Density\" is 0) that the impulses of a "

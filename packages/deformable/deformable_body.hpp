@@ -27,7 +27,7 @@ struct DeformableBody {
   double fluid_density =
       0;  ///< density of the fluid that it carries along, about, per the same measure
   double restitution = 0, friction = 0;
-  TimeIntegration integration = TimeIntegration::second_order;
+  TimeIntegration integration = TimeIntegration::fully_implicit;
   int most_sub_steps =
       1;  ///< most sub-steps that average its elastic forces; 1: its stable step bounds the step
   bool consistent_mass =

@@ -50,9 +50,9 @@ void ExplicitElasticity<dim>::update_largest_stable_step() {
     const double longest =
         std::min(viscous_step, longest_sub_stepped(elastic_step_[b], body.most_sub_steps));
     if (longest < largest_stable_step_.dt)
-      largest_stable_step_ = {longest, "stiffest element of " + body.name,
-                              "No element bounds it with \"Time Integration\" = second-order of "
-                              "that solid, the default."};
+      largest_stable_step_ = {
+          longest, "stiffest element of " + body.name,
+          "No element bounds it with \"Time Integration\" = fully-implicit of that solid."};
   }
 }
 

@@ -52,7 +52,7 @@ class StepBounds(unittest.TestCase):
         self.assertEqual(self.bounds(content), ["stiffest element of Rope"] * 45)
         log = self.log(content)
         self.assertEqual(log.count("warning: Step 20: for 20 steps the bound by the stiffest element of Rope ("), 1)
-        self.assertIn('No element bounds it with "Time Integration" = second-order of that solid, the default. Later steps', log)
+        self.assertIn('No element bounds it with "Time Integration" = fully-implicit of that solid. Later steps', log)
         content["Time"]["Steps"] = 19
         self.assertNotIn("warning: ", self.log(content))
 
