@@ -46,8 +46,8 @@ double half_thickness_of(const SolidDescription& solid, const GaussSeidelOptions
 
 template <int dim>
 ContactProblem<dim>::ContactProblem(const SolidSystem<dim>& system,
-                                    const ContactShapes<dim>& shapes, const ContactSetting& setting,
-                                    ContactPhase phase, double dt)
+                                    const ContactShapes<dim>& shapes,
+                                    const ContactConditions& setting, ContactPhase phase, double dt)
     : system_(system),
       shapes_(shapes),
       walls_(setting.walls),

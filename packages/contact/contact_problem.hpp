@@ -16,7 +16,7 @@ namespace lockstep {
 constexpr double watched_gap = 0.1;
 
 /// Walls and options of contact, and pairs of solids that have none.
-struct ContactSetting {
+struct ContactConditions {
   const std::vector<HalfSpace>& walls;
   const GaussSeidelOptions& options;
   const SolidPairs& apart;  ///< pairs that do not touch, in both orders
@@ -31,7 +31,7 @@ class ContactProblem {
  public:
   /// The system, the shapes and what the setting refers to must outlive this; dt [s].
   ContactProblem(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
-                 const ContactSetting& setting, ContactPhase phase, double dt);
+                 const ContactConditions& setting, ContactPhase phase, double dt);
 
   /// Contacts that bounce by an earlier decision of this step, by `bounce_key`: they bounce in this
   /// one, too, which adds its own. Decisions that a coupled solve asks for one after the other
