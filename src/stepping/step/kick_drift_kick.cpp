@@ -119,9 +119,10 @@ FirstKick<dim> kick_with_joints(StepParts<dim>& parts, StepContext<dim> context)
   context.joints.given = correction;
   StageResults<dim> stages = kick(parts, context);
   const auto drift = [&] {
-    const RCP<const Vector>& given = context.joints.given;
-    const RCP<const Vector> none = given.is_null() ? make_vector(solids.map()) : given;
-    return parts.positions.closed_drift(context, *stages.end.solution.velocity, *none);
+    RCP<const Vector> given = context.joints.given;
+    if (given.is_null())
+      given = make_vector(solids.map());
+    return parts.positions.closed_drift(context, *stages.end.solution.velocity, *given);
   };
   ClosedDrift<dim> closed = drift();
   const RCP<const Vector> error = closed.motion.constraint_error;
