@@ -110,10 +110,10 @@ std::vector<std::pair<std::string, std::string>> notes_of_inflows(
   std::vector<std::pair<std::string, std::string>> notes;
   for_each_inflow(domain.boundary, [&](int axis, int end, const BoundarySide<dim>& side) {
     if (side.wave) {
-      const double length = 2 * M_PI / side.wave->number;
+      const double length = side.wave->theory->length();
       notes.emplace_back("inflow " + side_name(axis, end),
                          fmt::format("waves {:.6g} m long ({:.3g} cells), {:.6g} m/s fast", length,
-                                     length / domain.spacing(), side.wave->speed()));
+                                     length / domain.spacing(), side.wave->theory->speed()));
       return;
     }
     double open_area = 0;
