@@ -177,7 +177,7 @@ TEST(InflowWave, NeitherFillsNorEmptiesTheTank) {
   const InflowWave<2> airy = wave(0.002);
   EXPECT_LT(std::abs(mean_flow(airy, 0.001)), 0.01 * g * 1e-6 / (2 * airy.theory->speed()));
   const InflowWave<2> fifth = wave(0.05, "Stokes 5");
-  EXPECT_LT(std::abs(mean_flow(fifth, 0)), 1e-3 * g * 0.025 * 0.025 / (2 * fifth.theory->speed()));
+  EXPECT_LT(std::abs(mean_flow(fifth, 0)), 1e-2 * g * 0.025 * 0.025 / (2 * fifth.theory->speed()));
 }
 
 TEST(InflowWave, GoesInwardsFromEitherSide) {
