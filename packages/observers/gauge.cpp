@@ -21,6 +21,35 @@ const LiquidFluid<dim>& liquid_of(const FluidDiscretization<dim>& fluid) {
               "domain; leave it out, or give \"Fluid\" the list \"Free Surface\".");
   return *liquid;
 }
+
+/// Wet part of a piece of a line, and how far on it the wet reaches; of its length.
+struct WetPart {
+  double share = 0, end = 0;
+};
+
+/// The distance is linear along the piece. Where a solid is on it, samples tell.
+template <int dim>
+WetPart wet_part(const LiquidFluid<dim>& liquid, const std::array<Point<dim>, 2>& ends,
+                 const std::array<double, 2>& distance) {
+  const bool begins = distance[0] < 0, ends_wet = distance[1] < 0;
+  if (!begins && !ends_wet)
+    return {};
+  const double crossing = begins != ends_wet ? distance[0] / (distance[0] - distance[1]) : 1;
+  WetPart part{begins ? crossing : 1 - crossing, ends_wet ? 1 : crossing};
+  const auto at = [&](double place) { return Point<dim>((1 - place) * ends[0] + place * ends[1]); };
+  if (!liquid.in_solid(at(0)) && !liquid.in_solid(at(0.5)) && !liquid.in_solid(at(1)))
+    return part;
+  constexpr int n_samples = 64;
+  part = {};
+  for (int i = 0; i < n_samples; ++i) {
+    const double place = (i + 0.5) / n_samples;
+    if ((1 - place) * distance[0] + place * distance[1] >= 0 || liquid.in_solid(at(place)))
+      continue;
+    part.share += 1. / n_samples;
+    part.end = (i + 1.) / n_samples;
+  }
+  return part;
+}
 }  // namespace
 
 template <int dim>
@@ -45,7 +74,7 @@ Gauge<dim>::Gauge(const ParameterList& list) {
 
 template <int dim>
 std::vector<ObservedColumn> Gauge<dim>::columns() const {
-  return {{"wet_length", "m", "of the line, in the liquid or in solids below its surface"},
+  return {{"wet_length", "m", "of the line, in the liquid; solids count as dry"},
           {"top", "m", "from its foot to the farthest place on it that is wet; 0 if none is"}};
 }
 
@@ -63,16 +92,15 @@ std::vector<std::vector<double>> Gauge<dim>::observe(const RunView<dim>& run) {
   for (int i = 0; i <= n; ++i)
     points.push_back(foot_ + (head_ - foot_) * i / n);
   const std::vector<double> distance = liquid.surface_distances(points);
-  double wet = 0, top = 0;
+  WetPart all;
   for (int i = 0; i < n; ++i) {
-    const double begin = distance[i], end = distance[i + 1];
-    if (begin >= 0 && end >= 0)
-      continue;
-    const double crossing = (begin < 0) != (end < 0) ? begin / (begin - end) : 1;
-    wet += begin < 0 ? crossing : 1 - crossing;
-    top = i + (end < 0 ? 1 : crossing);
+    const WetPart one =
+        wet_part(liquid, {points[i], points[i + 1]}, {distance[i], distance[i + 1]});
+    all.share += one.share / n;
+    if (one.share > 0)
+      all.end = (i + one.end) / n;
   }
-  return {{wet * length / n, top * length / n}};
+  return {{all.share * length, all.end * length}};
 }
 
 template ParameterList gauge_parameters<2>();

@@ -87,6 +87,26 @@ class Flows(Observers):
                             self.assertAlmostEqual(float(row["volume_rate"]), wanted, delta=1e-6)
                             self.assertAlmostEqual(float(row["open_area"]), wanted, delta=1e-6)
 
+    def test_solids_on_a_gauge_are_dry(self):
+        """A block .32 m high stands in water .63 m deep: above it .31 m of the line are wet, up to .63 m; a lid dips in beside."""
+        for dimension in (2, 3):
+            down, up = (0.,) * (dimension - 1) + (-10.,), dimension - 1
+            place = lambda *ends: tuple(v for x, z in ends for v in (x, *(.5,) * (dimension - 2), z))  # noqa: E731
+            box = lambda x, z, size: {"Type": "rigid body", "Motion": {"Type": "static"}, "Position": place((x, z)),  # noqa: E731
+                                      "Geometry": {"Shape": "box", "Size": (.25, *(.25,) * (dimension - 2), size)}}
+            solids = {"Block": box(.3, .16, .32), "Lid": box(.7, .75, .5)}
+            gauges = {"block": place((.3, 0.), (.3, 1.)), "lid": place((.7, 0.), (.7, 1.)), "free": place((.5, .1), (.5, .9))}
+            observers = {name: {"Type": "gauge", "Points": ends} for name, ends in gauges.items()}
+            for interface in ("level set", "volume of fluid"):
+                with self.subTest(dimension=dimension, interface=interface):
+                    fluid = {"Gravity": down, "Free Surface": {"Liquid": {"Pool": {"Type": "level", "Height": .63}}, "Interface": {"Type": interface}}}
+                    sides = {f"{'xyz'[up]} upper": {"Type": "open"}}
+                    tables = self.tables(scene(dimension, observers, solids, fluid=fluid, sides=sides), *observers)
+                    for rows, wet, top in zip(tables, (.31, .5, .53), (.63, .5, .53)):
+                        for row in rows:
+                            self.assertAlmostEqual(float(row["wet_length"]), wet, delta=2e-3)
+                            self.assertAlmostEqual(float(row["top"]), top, delta=2e-3)
+
     def test_both_ways_to_give_a_window_agree(self):
         """A solid stands in some of them."""
         for dimension, box, points in ((2, ((.5, .1), (.5, 1.)), (.5, .1, .5, 1.)), (2, ((.1, .5), (.9, .5)), (.9, .5, .1, .5)),

@@ -17,6 +17,10 @@ class MacLiquid : public LiquidFluid<dim> {
 
   double surface_distance(const Point<dim>& x) const override { return liquid_.distance(x); }
   std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const override;
+  bool in_solid(const Point<dim>& x) const override {
+    const auto& surface = flow_.geometry.state.surface;
+    return surface && surface->inside(flow_.domain.grid.wrap(x)) >= 0;
+  }
   std::vector<WaterLevel> levels_at_solids() const override;
   double gas_density() const override { return liquid_.gas_density(); }
   LiquidReport report() const override { return liquid_.report(); }

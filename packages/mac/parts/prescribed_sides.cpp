@@ -46,20 +46,35 @@ std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<dim>& domain,
 }
 
 namespace {
-/// Change of the velocity inwards by which a side takes the head rho u^2/2 that fluid which comes
-/// in at u > 0 [m/s] has gained on its way from rest; none where it goes out. It never turns the
+/// Square of the velocity along an open side, the mean over the faces of the cell beside it.
+template <int dim>
+double speed_along_2(const TiledGrid<dim>& grid, const FaceField<dim>& velocity, int axis,
+                     int cell) {
+  double sum = 0;
+  for (int a = 0; a < dim; ++a) {
+    const int upper = grid.neighbor(cell, a, 1);
+    const double mean = 0.5 * (velocity[a][cell] + (upper < 0 ? 0 : velocity[a][upper]));
+    sum += a == axis ? 0 : mean * mean;
+  }
+  return sum;
+}
+
+/// Change of the velocity inwards by which a side takes the head u^2/2 that fluid which comes in at
+/// `inwards` > 0 [m/s] has gained on its way from rest; none where it goes out. It never turns the
 /// flow: in steps in which fluid comes in by more than a cell it is less.
-double loss_of_inflow(const FaceProperties& face, double inwards, double spacing, double dt) {
+double loss_of_inflow(const FaceProperties& face, double inwards, double along_2, double step) {
   if (inwards <= 0)
     return 0;
-  return -0.5 * face.distance_factor * inwards * std::min(dt * inwards / spacing, 1.0);
+  return -0.5 * face.distance_factor * std::min(step * (inwards * inwards + along_2), inwards);
 }
 }  // namespace
 
 template <int dim>
 Momentum<dim> push_of_pressures(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                double time, double dt, FaceField<dim>& velocity) {
+                                double time, double dt, const FaceField<dim>& last,
+                                FaceField<dim>& velocity) {
   Momentum<dim> mine;
+  const double per_cell = dt / domain.spacing();
   for (int axis = 0; axis < dim; ++axis) {
     const auto& sides = domain.boundary.sides[axis];
     if (sides[0].pressure.vanishes() && sides[1].pressure.vanishes())
@@ -77,9 +92,10 @@ Momentum<dim> push_of_pressures(const MacDomain<dim>& domain, const MacGeometry<
       const FaceProperties& face = geometry.face_table(axis, cell);
       const double inward = beside.lower < 0 ? 1 : -1;
       const double pressure = side.pressure(0, domain.grid.face_center(axis, cell), time);
-      const double change =
-          inward * (dt * face.gradient * pressure +
-                    loss_of_inflow(face, inward * velocity[axis][cell], domain.spacing(), dt));
+      const double along_2 =
+          speed_along_2<dim>(domain.grid, last, axis, std::max(beside.lower, beside.upper));
+      const double loss = loss_of_inflow(face, inward * velocity[axis][cell], along_2, per_cell);
+      const double change = inward * (dt * face.gradient * pressure + loss);
       velocity[axis][cell] += change;
       moments.add(cell, geometry.mass(axis, cell) * change);
     });
@@ -94,10 +110,10 @@ std::vector<std::pair<std::string, std::string>> notes_of_inflows(
   std::vector<std::pair<std::string, std::string>> notes;
   for_each_inflow(domain.boundary, [&](int axis, int end, const BoundarySide<dim>& side) {
     if (side.wave) {
-      const double length = 2 * M_PI / side.wave->number;
+      const double length = side.wave->theory->length();
       notes.emplace_back("inflow " + side_name(axis, end),
                          fmt::format("waves {:.6g} m long ({:.3g} cells), {:.6g} m/s fast", length,
-                                     length / domain.spacing(), side.wave->speed()));
+                                     length / domain.spacing(), side.wave->theory->speed()));
       return;
     }
     double open_area = 0;
@@ -126,9 +142,9 @@ std::vector<std::pair<std::string, std::string>> notes_of_inflows(
 }
 
 template Momentum<2> push_of_pressures<2>(const MacDomain<2>&, const MacGeometry<2>&, double,
-                                          double, FaceField<2>&);
+                                          double, const FaceField<2>&, FaceField<2>&);
 template Momentum<3> push_of_pressures<3>(const MacDomain<3>&, const MacGeometry<3>&, double,
-                                          double, FaceField<3>&);
+                                          double, const FaceField<3>&, FaceField<3>&);
 template std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<2>&, const MacGeometry<2>&,
                                                      double);
 template std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<3>&, const MacGeometry<3>&,

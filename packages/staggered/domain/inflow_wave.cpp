@@ -9,89 +9,57 @@
 
 namespace lockstep {
 
-namespace {
-/// cosh(k (z + d)) / sinh(k d) and sinh(k (z + d)) / sinh(k d), which stay finite in deep water.
-struct Profile {
-  double k, depth;
-
-  double cosh_part(double z) const { return part(z, 1); }
-  double sinh_part(double z) const { return part(z, -1); }
-
- private:
-  double part(double z, double sign) const {
-    z = std::clamp(z, -depth, 0.0);
-    return (std::exp(k * z) + sign * std::exp(-k * (z + 2 * depth))) /
-           (1 - std::exp(-2 * k * depth));
-  }
-};
-
-/// Integral from `lower` to `upper` of a part that is as at 0 above 0 and as at -depth below that;
-/// `primitive` is its integral in between.
-template <typename Part, typename Primitive>
-double integral(const Part& part, const Primitive& primitive, double depth, double lower,
-                double upper) {
-  const double begin = std::clamp(lower, -depth, 0.0), end = std::clamp(upper, -depth, 0.0);
-  const double above = std::max(upper, 0.0) - std::max(lower, 0.0);
-  const double below = std::min(upper, -depth) - std::min(lower, -depth);
-  return primitive(end) - primitive(begin) + above * part(0) + below * part(-depth);
-}
-}  // namespace
-
-double wave_number(double frequency, double gravity, double depth) {
-  const double deep = frequency * frequency / gravity;
-  // Newton's method from a start of the right size (Eckart 1952, off by 5 % at most).
-  double k = deep / std::sqrt(std::tanh(deep * depth));
-  for (int i = 0; i < 20; ++i) {
-    const double t = std::tanh(k * depth);
-    const double change = (k * t - deep) / (t + k * depth * (1 - t * t));
-    k -= change;
-    if (std::abs(change) < 1e-15 * k)
-      break;
-  }
-  return k;
-}
-
-template <int dim>
-Point<dim> InflowWave<dim>::velocity(double along, double up_part, double time) const {
-  const double a = share(time) * height / 2, omega = frequency();
-  const double mean_flow =
-      a * a * gravity / (2 * speed());  // a wave's own, between crest and bottom
-  const double inwards = a * omega * along * std::sin(omega * time) - mean_flow / depth;
-  return inwards * inward + a * omega * up_part * std::cos(omega * time) * up;
-}
-
 template <int dim>
 Point<dim> InflowWave<dim>::velocity_at(const Point<dim>& x, double time) const {
-  const Profile profile{number, depth};
-  const double z = x.dot(up) - level;
-  return velocity(profile.cosh_part(z), profile.sinh_part(z), time);
+  const double top = theory->top(time, share(time));
+  const double z = std::clamp(x.dot(up) - level, -depth, std::max(top, -depth));
+  return velocity(theory->motion(z, time, share(time)));
 }
 
 template <int dim>
 Point<dim> InflowWave<dim>::mean_velocity(const Box<dim>& box, double time) const {
-  const Profile profile{number, depth};
   const double one = box.min().dot(up) - level, other = box.max().dot(up) - level;
   const double lower = std::min(one, other), upper = std::max(one, other);
   if (upper - lower <= 0)
     return velocity_at(box.min(), time);
-  const auto c = [&](double z) { return profile.cosh_part(z); };
-  const auto s = [&](double z) { return profile.sinh_part(z); };
-  const auto integral_of_c = [&](double z) { return profile.sinh_part(z) / number; };
-  const auto integral_of_s = [&](double z) { return profile.cosh_part(z) / number; };
-  const double along = integral(c, integral_of_c, depth, lower, upper);
-  const double up_part = integral(s, integral_of_s, depth, lower, upper);
-  return velocity(along / (upper - lower), up_part / (upper - lower), time);
+  const double bottom = -depth, top = std::max(theory->top(time, share(time)), bottom);
+  WaveMotion sum;
+  const auto add = [&](double length, double z) {
+    if (length <= 0)
+      return;
+    const WaveMotion motion = theory->motion(z, time, share(time));
+    sum.along += length * motion.along;
+    sum.upward += length * motion.upward;
+  };
+  // Gauss and Legendre's points and weights: exact for polynomials of order 9.
+  constexpr double points[] = {-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
+                               0.906179845938664};
+  constexpr double weights[] = {0.236926885056189, 0.478628670499366, 0.568888888888889,
+                                0.478628670499366, 0.236926885056189};
+  const double begin = std::clamp(lower, bottom, top), end = std::clamp(upper, bottom, top);
+  for (int i = 0; i < 5; ++i)
+    add(weights[i] * (end - begin) / 2, (begin + end) / 2 + points[i] * (end - begin) / 2);
+  add(std::max(upper, top) - std::max(lower, top), top);
+  add(std::min(upper, bottom) - std::min(lower, bottom), bottom);
+  return velocity(sum) / (upper - lower);
 }
 
 void declare_inflow_wave(ParameterList& side) {
   ParameterList& wave = declare_optional_list(
       side, "Wave",
-      "An inflow sends a regular wave into a tank of liquid: at the side the water moves as below "
-      "a wave of linear theory that goes inwards, less that wave's mean flow. The still water is "
-      "the \"level\" in \"Liquid\", down to the side of the domain below it. It begins with a "
-      "crest.");
-  declare_required_positive(wave, "Height", "From trough to crest [m].");
-  declare_required_positive(wave, "Frequency", "Crests per second [1/s].");
+      "An inflow sends waves into a tank of liquid: at the side the water moves as below a wave "
+      "that goes inwards, less that wave's mean flow. The still water is the \"level\" in "
+      "\"Liquid\", down to the side of the domain below it. They begin with a crest.");
+  declare_choice(
+      wave, "Type", wave_theories().front(), wave_theories(),
+      "Airy: linear, for low waves; Stokes 2 and Stokes 5: to the second and fifth order "
+      "of the steepness, with sharper crests that are faster in the fifth; solitary: one "
+      "crest on shallow water, of third order, with the water that it brings.");
+  declare_required_positive(wave, "Height",
+                            "From trough to crest, of a solitary wave above the still water [m].");
+  declare_optional<double>(wave, "Frequency",
+                           "Crests per second [1/s]; for all but a solitary wave.");
+  set_positive(wave, "Frequency");
   declare_at_least(wave, "Ramp Time", 0.0, 0.0,
                    "Time during which the height grows linearly from 0 [s].");
 }
@@ -137,17 +105,6 @@ double still_level(const ParameterList& fluid, const std::string& where) {
   return *height;
 }
 
-/// Waves that are steeper or higher break (Miche 1944).
-template <int dim>
-void check_height(const InflowWave<dim>& wave, const std::string& where) {
-  const double length = 2 * M_PI / wave.number;
-  const double highest = 0.142 * length * std::tanh(wave.number * wave.depth);
-  check_input(wave.height < highest,
-              "In \"{}\", a wave of a period of {:g} s on water {:g} m deep is {:.3g} m long and "
-              "breaks where it is {:.3g} m high, but its \"Height\" is {:g} m; make it lower or "
-              "longer.",
-              where, wave.period, wave.depth, length, highest, wave.height);
-}
 }  // namespace
 
 template <int dim>
@@ -175,12 +132,13 @@ std::optional<InflowWave<dim>> read_inflow_wave(const ParameterList& side,
               "always, to know where up is.",
               where);
   const ParameterList& list = side.sublist("Wave");
+  const auto theory = list.get<std::string>("Type");
+  check_input(list.isParameter("Frequency") == (theory != "solitary"), "In \"{}\", {}", where,
+              theory == "solitary" ? "a solitary wave has no \"Frequency\"; leave it out."
+                                   : "a \"Wave\" needs a \"Frequency\", in crests per second.");
   InflowWave<dim> wave;
-  wave.height = list.get<double>("Height");
-  wave.period = 1 / list.get<double>("Frequency");
   wave.ramp_time = list.get<double>("Ramp Time");
   wave.level = still_level<dim>(fluid, where);
-  wave.gravity = gravity.norm();
   wave.up = -gravity.normalized();
   wave.inward = Point<dim>::Unit(axis) * (end == 0 ? 1 : -1);
   const double one = domain.min().dot(wave.up), other = domain.max().dot(wave.up);
@@ -190,8 +148,9 @@ std::optional<InflowWave<dim>> read_inflow_wave(const ParameterList& side,
               "{:g} m, measured against gravity.",
               where, wave.level, bottom, top);
   wave.depth = wave.level - bottom;
-  wave.number = wave_number(wave.frequency(), wave.gravity, wave.depth);
-  check_height(wave, where);
+  const double period = list.isParameter("Frequency") ? 1 / list.get<double>("Frequency") : 0;
+  wave.theory =
+      make_wave(theory, {list.get<double>("Height"), period, wave.depth, gravity.norm()}, where);
   return wave;
 }
 
