@@ -17,7 +17,7 @@ RESULTS = "docs/results"
 # A file that is new to a build changes too; a list of the files of a room changes no figure.
 NOT_BUILD_FILES = ":(exclude)*CMakeLists.txt"
 ANY_SOLVE = ["src/solve", "src/linear", "src/coupling", "packages/strategies", "packages/multigrid", "xml-params/solvers"]
-SOLID_PACKAGES = {"rigid body": "rigid", "deformable body": "deformable", "cloth": "deformable", "spring": "lines", "mooring line": "lines"}
+SOLID_PACKAGES = {"rigid body": "rigid", "deformable body": "deformable", "cloth": "deformable", "spring": "lines", "rope": "lines", "mooring line": "lines"}
 COUPLING_PACKAGES = {"mixed face": {"mixedface"}, "flux": {"cutcell"}, "automatic": {"mixedface", "cutcell"}}
 
 

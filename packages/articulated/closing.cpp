@@ -86,29 +86,34 @@ class Rows {
       const std::vector<Screw<dim>> held = held_rows(joint.kind, place.pose);
       const Eigen::VectorXd open = gap(joint.kind, place.pose);
       for (std::size_t k = 0; k < held.size(); ++k)
-        set(row++, held[k], open[k], joint, place, poses, rows, gaps);
+        set(row++, held[k], open[k], {joint, place, poses}, rows, gaps);
       if (!joint.control.any_given())
         continue;
       const std::vector<Screw<dim>> rates = rate_rows(joint.kind, place.pose);
       const Eigen::VectorXd left = distance_to(joint.kind, place.pose, joint.goal.q);
       for (int k = 0; k < left.size(); ++k) {
         if (joint.control.given(k))
-          set(row++, rates[k], -left[k], joint, place, poses, rows, gaps);
+          set(row++, rates[k], -left[k], {joint, place, poses}, rows, gaps);
       }
     }
   }
 
  private:
-  void set(int row, const Screw<dim>& screw, double value, const Joint<dim>& joint,
-           const JointPlace<dim>& place, const std::vector<BodyPose<dim>>& poses,
+  /// A joint where the poses of all bodies put it.
+  struct PlacedJoint {
+    const Joint<dim>& joint;
+    const JointPlace<dim>& place;
+    const std::vector<BodyPose<dim>>& poses;
+  };
+  void set(int row, const Screw<dim>& screw, double value, const PlacedJoint& placed,
            Eigen::MatrixXd& rows, Eigen::VectorXd& gaps) const {
     const double scale = screw.linear.isZero(0) ? 1 : 1 / unit_;
     gaps[row] = scale * value;
     for (int side = 0; side < 2; ++side) {
-      const int body = joint.sides[side].body;
+      const int body = placed.joint.sides[side].body;
       if (body != space && column_[body] >= 0)
         rows.block(row, column_[body], 1, n_twist<dim>) +=
-            scale * row_on_side(screw, place, side, poses[body].position).transpose();
+            scale * row_on_side(screw, placed.place, side, placed.poses[body].position).transpose();
     }
   }
 

@@ -47,19 +47,17 @@ double half_thickness_of(const SolidDescription& solid, const GaussSeidelOptions
 template <int dim>
 ContactProblem<dim>::ContactProblem(const SolidSystem<dim>& system,
                                     const ContactShapes<dim>& shapes,
-                                    const std::vector<HalfSpace>& walls,
-                                    const GaussSeidelOptions& options, const SolidPairs& apart,
-                                    double spacing, ContactPhase phase, double dt)
+                                    const ContactConditions& setting, ContactPhase phase, double dt)
     : system_(system),
       shapes_(shapes),
-      walls_(walls),
-      options_(options),
-      apart_(apart),
-      spacing_(spacing),
+      walls_(setting.walls),
+      options_(setting.options),
+      apart_(setting.apart),
+      spacing_(setting.spacing),
       phase_(phase),
       dt_(dt) {
   for (const SolidDescription& solid : shapes.solids())
-    half_thickness_.push_back(half_thickness_of(solid, options, spacing));
+    half_thickness_.push_back(half_thickness_of(solid, options_, spacing_));
 }
 
 template <int dim>

@@ -15,16 +15,23 @@ namespace lockstep {
 /// not varied by a page.
 constexpr double watched_gap = 0.1;
 
+/// Walls and options of contact, and pairs of solids that have none.
+struct ContactConditions {
+  const std::vector<HalfSpace>& walls;
+  const GaussSeidelOptions& options;
+  const SolidPairs& apart;  ///< pairs that do not touch, in both orders
+  double spacing = 0;       ///< grid spacing h [m]
+};
+
 /// One resolution of contacts: candidates from the search, of which those that would be violated
 /// become active, a few for every pair of rigid solids, until none is left violated; for positions
 /// also the impacts of surfaces that are not rigid. Local, the same on all ranks.
 template <int dim>
 class ContactProblem {
  public:
-  /// `before`: V_S at the beginning of the step, `velocity`: the one to change; both by id.
+  /// The system, the shapes and what the setting refers to must outlive this; dt [s].
   ContactProblem(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
-                 const std::vector<HalfSpace>& walls, const GaussSeidelOptions& options,
-                 const SolidPairs& apart, double spacing, ContactPhase phase, double dt);
+                 const ContactConditions& setting, ContactPhase phase, double dt);
 
   /// Contacts that bounce by an earlier decision of this step, by `bounce_key`: they bounce in this
   /// one, too, which adds its own. Decisions that a coupled solve asks for one after the other
@@ -34,7 +41,8 @@ class ContactProblem {
   void leave_impacts() { leaves_impacts_ = true; }
   /// Contacts that act without friction, as if they touched, wherever they are; before `prepare`.
   void hold(std::vector<Contact<dim>> contacts) { held_ = std::move(contacts); }
-  /// Finds the candidates; false if there is nothing to act on. If none is `expected`, most of the
+  /// Finds the candidates; false if there is nothing to act on. `before`: V_S at the beginning of
+  /// the step, `velocity`: the one to change; both by id. If none is `expected`, most of the
   /// pairs of a solid that is not rigid with itself are skipped at first.
   bool prepare(const std::vector<double>& before, const std::vector<double>& velocity,
                bool expected);

@@ -136,8 +136,8 @@ typename GaussSeidelContact<dim>::Outcome GaussSeidelContact<dim>::act(
   };
   const bool is_soft = std::any_of(shapes.solids().begin(), shapes.solids().end(), bends);
   const GaussSeidelOptions options = decides ? options_of_decisions(options_, is_soft) : options_;
-  ContactProblem<dim> problem(solids, shapes, walls_, options, apart_among(solids.solids()),
-                              spacing_, phase, dt);
+  ContactProblem<dim> problem(solids, shapes,
+                              {walls_, options, apart_among(solids.solids()), spacing_}, phase, dt);
   if (decides)
     problem.leave_impacts();
   if (task == Task::decide && phase == ContactPhase::velocity)

@@ -97,12 +97,10 @@ bool FluxCoupling<dim>::moves_otherwise(std::size_t f) const {
 template <int dim>
 void FluxCoupling<dim>::add_share(const FluxShare<dim>& share, int direction,
                                   const SolidSystem<dim>& solids, RowEntries& row) const {
-  VelocityRow<dim> scratch;
-  std::vector<GlobalIndex> dofs;
-  std::vector<double> values;
-  directed_row<dim>(solids, share.point, share.center, direction, scratch, dofs, values);
-  for (std::size_t k = 0; k < dofs.size(); ++k)
-    row.emplace_back(dofs[k], share.weight * values[k]);
+  DirectedRow<dim> of_share;
+  directed_row<dim>(solids, share.point, share.center, direction, of_share);
+  for (std::size_t k = 0; k < of_share.dofs.size(); ++k)
+    row.emplace_back(of_share.dofs[k], share.weight * of_share.values[k]);
 }
 
 template <int dim>
@@ -303,18 +301,16 @@ AngularVector<dim> FluxCoupling<dim>::lumping_torque_error(
 template <int dim>
 void FluxCoupling<dim>::add_to_row(const std::vector<FluxShare<dim>>& shares, int direction,
                                    const SolidSystem<dim>& solids, EndVelocity<dim>& row) const {
-  VelocityRow<dim> scratch;
-  std::vector<GlobalIndex> dofs;
-  std::vector<double> values;
+  DirectedRow<dim> of_share;
   CouplingEnd<dim> end(solids, direction, row);
   for (const FluxShare<dim>& share : shares) {
     const bool rigid = solids.solids()[share.solid].rigid;
     if (!end.add(share.weight, share.point, share.solid, share.center,
                  rigid ? share.center : share.point.position))
       continue;
-    directed_row<dim>(solids, share.point, share.center, direction, scratch, dofs, values);
-    for (std::size_t k = 0; k < dofs.size(); ++k)
-      end.add_entry(dofs[k], share.weight * values[k]);
+    directed_row<dim>(solids, share.point, share.center, direction, of_share);
+    for (std::size_t k = 0; k < of_share.dofs.size(); ++k)
+      end.add_entry(of_share.dofs[k], share.weight * of_share.values[k]);
   }
   end.finish();
 }

@@ -155,7 +155,7 @@ void DeformableSolids<dim>::limit_motion(double dt, Vector& velocity) {
   Nodes limited = space.with_ghosts(velocity);
   limiting_impulse_.assign(space.n_local(), Point<dim>::Zero());
   stretch_beyond_limit_ =
-      strain_limit_.apply(nodes_.x, inverse, dt, space, nodes_.comm, limited, limiting_impulse_);
+      strain_limit_.apply(nodes_.x, inverse, dt, space, limited, limiting_impulse_);
   velocity.update(1, *space.vector(limited), 0);
 }
 

@@ -135,8 +135,7 @@ double StrainLimit<dim>::sweep(const std::vector<LimitedEdge>& edges, const Node
 
 template <int dim>
 double StrainLimit<dim>::apply(const Nodes& x, const Nodes& inverse_mass, double dt,
-                               const NodeSpace<dim>& space, const Communicator& comm,
-                               Nodes& velocity, Nodes& impulse) const {
+                               const NodeSpace<dim>& space, Nodes& velocity, Nodes& impulse) const {
   constexpr int most_sweeps = 100;
   constexpr double tolerance = 1e-3;
   double worst = 0;
@@ -147,7 +146,7 @@ double StrainLimit<dim>::apply(const Nodes& x, const Nodes& inverse_mass, double
       worst = std::max(worst, sweep(color.edges, x, inverse_mass, dt, velocity, impulse));
       exchange(color, sent, velocity);
     }
-    worst = max_all(comm, worst);
+    worst = max_all(space.dof_map()->getComm(), worst);
     if (worst <= tolerance)
       break;
   }

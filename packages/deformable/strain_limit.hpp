@@ -36,7 +36,7 @@ class StrainLimit {
   /// included, complete on owned nodes. Returns the largest stretch beyond the limit that is left,
   /// relative to the longest length. Collective.
   double apply(const Nodes& x, const Nodes& inverse_mass, double dt, const NodeSpace<dim>& space,
-               const Communicator& comm, Nodes& velocity, Nodes& impulse) const;
+               Nodes& velocity, Nodes& impulse) const;
 
  private:
   /// Edges without common nodes, in local numbers, and the nodes that other ranks' edges of them

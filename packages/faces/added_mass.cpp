@@ -91,9 +91,9 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
   std::vector<Triplet> triplets;
   if (lumping == Lumping::paper_diagonal)
     triplets = paper_diagonal_triplets<dim>(volumes, shares, solids, masses);
-  VelocityRow<dim> scratch;
-  std::vector<GlobalIndex> dofs;
-  std::vector<double> values;
+  DirectedRow<dim> row;
+  const std::vector<GlobalIndex>& dofs = row.dofs;
+  const std::vector<double>& values = row.values;
   const std::vector<GlobalIndex> carried = carried_dofs<dim>(volumes, shares, solids);
   const auto is_carried = [&carried](GlobalIndex dof) {
     return std::binary_search(carried.begin(), carried.end(), dof);
@@ -103,8 +103,7 @@ std::vector<Triplet> added_mass_triplets(const std::vector<ControlVolume<dim>>& 
       const bool is_rigid = solids.solids()[share.solid].rigid;
       if (is_rigid && lumping == Lumping::paper_diagonal)
         continue;  // done body by body
-      directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, scratch, dofs,
-                        values);
+      directed_row<dim>(solids, share.point, volumes[f].center, volumes[f].direction, row);
       // A rigid motion, or that of an element with nodes that a rigid body carries.
       const bool is_rigid_motion =
           is_rigid || (!carried.empty() && std::any_of(dofs.begin(), dofs.end(), is_carried));

@@ -131,17 +131,17 @@ void add_local_rotations(const std::vector<ControlVolume<dim>>& volumes,
 
 template <int dim>
 void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point,
-                  const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
-                  std::vector<GlobalIndex>& dofs, std::vector<double>& values) {
-  solids.velocity_row(point, x, scratch);
-  dofs.clear();
-  values.clear();
-  for (std::size_t k = 0; k < scratch.dofs.size(); ++k) {
-    const double value = scratch.coefficients[k][direction];
+                  const Point<dim>& x, int direction, DirectedRow<dim>& row) {
+  VelocityRow<dim>& all = row.all_components;
+  solids.velocity_row(point, x, all);
+  row.dofs.clear();
+  row.values.clear();
+  for (std::size_t k = 0; k < all.dofs.size(); ++k) {
+    const double value = all.coefficients[k][direction];
     if (value == 0)
       continue;
-    dofs.push_back(scratch.dofs[k]);
-    values.push_back(value);
+    row.dofs.push_back(all.dofs[k]);
+    row.values.push_back(value);
   }
 }
 
@@ -269,7 +269,7 @@ template void weigh_nodes_alike<2>(const SurfaceSnapshot<2>&,
 template void weigh_nodes_alike<3>(const SurfaceSnapshot<3>&,
                                    std::vector<std::vector<SurfaceShare<3>>>&);
 template void directed_row<2>(const SolidSystem<2>&, const SurfacePoint<2>&, const Point<2>&, int,
-                              VelocityRow<2>&, std::vector<GlobalIndex>&, std::vector<double>&);
+                              DirectedRow<2>&);
 template void add_local_rotations<2>(const std::vector<ControlVolume<2>>&,
                                      const SurfaceSnapshot<2>&,
                                      std::vector<std::vector<SurfaceShare<2>>>&);
@@ -284,7 +284,7 @@ template CouplingWeights coupling_weights<2>(const std::vector<ControlVolume<2>>
 template std::vector<std::vector<SurfaceShare<3>>> surface_shares<3>(
     const std::vector<ControlVolume<3>>&, const SurfaceSnapshot<3>&, double);
 template void directed_row<3>(const SolidSystem<3>&, const SurfacePoint<3>&, const Point<3>&, int,
-                              VelocityRow<3>&, std::vector<GlobalIndex>&, std::vector<double>&);
+                              DirectedRow<3>&);
 template void add_local_rotations<3>(const std::vector<ControlVolume<3>>&,
                                      const SurfaceSnapshot<3>&,
                                      std::vector<std::vector<SurfaceShare<3>>>&);

@@ -59,11 +59,17 @@ struct CouplingWeights {
   int n_rows() const { return static_cast<int>(row_begin.size()) - 1; }
 };
 
-/// The entries of one share of one row, before weighting: used for lumping share by share.
+/// The row of one velocity component over the solid map, without zeros.
+template <int dim>
+struct DirectedRow {
+  std::vector<GlobalIndex> dofs;
+  std::vector<double> values;
+  VelocityRow<dim> all_components;  ///< scratch, kept for its memory
+};
+/// Finds the entries of one share of one row, before weighting: for lumping share by share.
 template <int dim>
 void directed_row(const SolidSystem<dim>& solids, const SurfacePoint<dim>& point,
-                  const Point<dim>& x, int direction, VelocityRow<dim>& scratch,
-                  std::vector<GlobalIndex>& dofs, std::vector<double>& values);
+                  const Point<dim>& x, int direction, DirectedRow<dim>& row);
 
 /// The velocity along `direction` at x that the shares of a face make, as entries of the solid map:
 /// the entries of each share by its weight, and once the contribution of each local rotation.

@@ -48,8 +48,13 @@ ParameterList spring_parameters() {
                    "[N s/m^2]).");
   declare_optional<double>(list, "Length", "Length at rest [m]; default: that at the start.");
   set_at_least(list, "Length", 0);
-  declare(list, "Tension Only", false,
-          "It does nothing while it is shorter than at rest, as a rope.");
+  return list;
+}
+
+template <int dim>
+ParameterList rope_parameters() {
+  ParameterList list = spring_parameters<dim>();
+  list.setName("rope");
   return list;
 }
 
@@ -67,19 +72,31 @@ ParameterList mooring_line_parameters() {
   return list;
 }
 
+namespace {
 template <int dim>
-Line<dim> read_spring(const std::string& name, const ParameterList& list) {
+Line<dim> read_stretched(const std::string& name, const ParameterList& list, bool tension_only) {
   Line<dim> line = read_ends<dim>(name, list);
   SpringParameters spring;
   spring.stiffness = list.get<double>("Stiffness");
   spring.damping = list.get<double>("Damping");
   spring.length = list.isParameter("Length") ? list.get<double>("Length")
                                              : (line.ends[1] - line.ends[0]).norm();
-  spring.tension_only = list.get<bool>("Tension Only");
+  spring.tension_only = tension_only;
   check_input(spring.stiffness > 0 || spring.damping > 0,
-              "The spring \"{}\" has neither \"Stiffness\" nor \"Damping\"; give it one.", name);
+              "The line \"{}\" has neither \"Stiffness\" nor \"Damping\"; give it one.", name);
   line.law = spring_law<dim>(spring);
   return line;
+}
+}  // namespace
+
+template <int dim>
+Line<dim> read_spring(const std::string& name, const ParameterList& list) {
+  return read_stretched<dim>(name, list, false);
+}
+
+template <int dim>
+Line<dim> read_rope(const std::string& name, const ParameterList& list) {
+  return read_stretched<dim>(name, list, true);
 }
 
 template <int dim>
@@ -108,10 +125,14 @@ Line<dim> read_mooring_line(const std::string& name, const ParameterList& list,
 
 template ParameterList spring_parameters<2>();
 template ParameterList spring_parameters<3>();
+template ParameterList rope_parameters<2>();
+template ParameterList rope_parameters<3>();
 template ParameterList mooring_line_parameters<2>();
 template ParameterList mooring_line_parameters<3>();
 template Line<2> read_spring<2>(const std::string&, const ParameterList&);
 template Line<3> read_spring<3>(const std::string&, const ParameterList&);
+template Line<2> read_rope<2>(const std::string&, const ParameterList&);
+template Line<3> read_rope<3>(const std::string&, const ParameterList&);
 template Line<2> read_mooring_line<2>(const std::string&, const ParameterList&, const Point<2>&);
 template Line<3> read_mooring_line<3>(const std::string&, const ParameterList&, const Point<3>&);
 

@@ -23,12 +23,17 @@ std::unique_ptr<SolidModel<dim>> model_of_lines(const std::string& type, const R
 
 template <int dim>
 void register_lines(SolidRegistry<dim>& solids) {
-  solids.add("spring",
-             "Spring and damper between points of two rigid bodies, or of one and space; a rope, "
-             "if it may not push.",
+  solids.add("spring", "Spring and damper between points of two rigid bodies, or of one and space.",
              spring_parameters<dim>,
              [](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
                return model_of_lines<dim>("spring", read_spring<dim>, lists, setting);
+             });
+  solids.add("rope",
+             "Spring and damper between points of two rigid bodies, or of one and space, that does "
+             "nothing while it is shorter than at rest.",
+             rope_parameters<dim>,
+             [](const ParameterList&, const NamedLists& lists, const SolidSetting<dim>& setting) {
+               return model_of_lines<dim>("rope", read_rope<dim>, lists, setting);
              });
   solids.add("mooring line",
              "Line under its weight in the fluid between points of two rigid bodies, or of one and "

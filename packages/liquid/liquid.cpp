@@ -147,7 +147,7 @@ void Liquid<dim>::extend(const InterfaceStep<dim>& step, const std::vector<char>
   const double band = interface_->band(std::min(displacement, farthest)) * domain_.spacing();
   const auto solids = step.kept.of(state.surface, domain_.grid, 2);
   const double known = interface_->band(0) * domain_.spacing();
-  const VelocityExtension<dim> extension(domain_, interface_->distance(), known, band, near,
+  const VelocityExtension<dim> extension(domain_, {interface_->distance(), known, band}, near,
                                          *solids, state);
   extension.extend(step.time, step.surface.velocity, advection_velocity);
   stop_beyond<dim>(state, advection_velocity);

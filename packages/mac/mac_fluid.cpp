@@ -271,8 +271,8 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   const MacGeometry<dim>& geometry = flow_.geometry;
   const ForceField<dim> force(flow_.domain, geometry, flow_.parameters.forces, flow_.scalars);
   Momentum<dim> mine = damp(time + dt / 2, dt);
-  mine += push_faces(force, dt);
   mine += push_of_pressures<dim>(flow_.domain, geometry, time + dt / 2, dt, flow_.prediction);
+  mine += push_faces(force, dt);
   if (tiles_.move())
     mine += tiles_.push_at_band_edge(force.of_surroundings(), dt);
   if (flow_.has_drops())

@@ -85,7 +85,7 @@ class LayoutKernels final : public ConjugateGradientKernels {
         [&](int colour, std::ptrdiff_t at, int n, const double* product, const float* diagonal) {
           const std::ptrdiff_t first = colour * n_slots + at;
           const auto advance_where = [&](const auto& has_row) {
-            return advance_row(step, has_row, d + first, product, n, x_values.getRawPtr() + first,
+            return advance_row(step, has_row, {d + first, product, n}, x_values.getRawPtr() + first,
                                r_values.getRawPtr() + first);
           };
           sum += diagonal == nullptr
@@ -97,11 +97,17 @@ class LayoutKernels final : public ConjugateGradientKernels {
   }
 
  private:
+  /// This rank's part of a row: d and A d in n slots.
+  struct DirectionRow {
+    const double *d, *product;
+    int n;
+  };
   /// x += step d and r -= step A d along this rank's part of a row; returns r.r. Rows that A leaves
   /// empty have no diagonal: what d was there is added apart.
   template <typename HasRow>
-  static double advance_row(double step, const HasRow& has_row, const double* d,
-                            const double* product, int n, double* x, double* r) {
+  static double advance_row(double step, const HasRow& has_row, const DirectionRow& row, double* x,
+                            double* r) {
+    const double *d = row.d, *product = row.product;
     constexpr int n_lanes = 16;  // as in sum_of_products
     std::array<double, n_lanes> sums{};
     const auto at = [&](int m, double& sum) {
@@ -111,12 +117,12 @@ class LayoutKernels final : public ConjugateGradientKernels {
       sum += has_row(m) * value * value;
     };
     int m = 0;
-    for (; m + n_lanes <= n; m += n_lanes) {
+    for (; m + n_lanes <= row.n; m += n_lanes) {
 #pragma GCC ivdep
       for (int lane = 0; lane < n_lanes; ++lane)
         at(m + lane, sums[lane]);
     }
-    for (; m < n; ++m)
+    for (; m < row.n; ++m)
       at(m, sums[0]);
     return std::accumulate(sums.begin(), sums.end(), 0.0);
   }

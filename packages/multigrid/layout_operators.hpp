@@ -177,7 +177,7 @@ class LayoutStencil final : public LayoutOperator<ResidualOperator> {
       if (level_.is_foreign(j, rows.k))
         continue;
       for (int colour = 0; colour < 2; ++colour) {
-        level_.multiply(colour, j, rows.k, unit_, x + colour * grid.n_slots,
+        level_.multiply({colour, j, rows.k}, unit_, x + colour * grid.n_slots,
                         x + (1 - colour) * grid.n_slots, row_.data());
         add_rests(colour, j, rows.k, x + colour * grid.n_slots);
         level_.for_each_own_range(j, rows.k, [&](int first, int last) {

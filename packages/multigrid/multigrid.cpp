@@ -221,7 +221,7 @@ void Multigrid<dim>::restrict_slab(int level, int slab) {
   for (int j = rows.j_begin; j < rows.j_end; ++j) {
     if (stencil.is_foreign(j, rows.k))
       continue;
-    stencil.residual(red, j, rows.k, work.b[red].data(), work.x[red].data(), work.x[black].data(),
+    stencil.residual({red, j, rows.k}, work.b[red].data(), work.x[red].data(), work.x[black].data(),
                      row_.data());
     const auto range = stencil.range(j, rows.k);
     float* sums = coarse_rows_.data() + (dim == 3 ? (j >> 1) * n_coarse : 0);
@@ -264,8 +264,9 @@ void Multigrid<dim>::restrict_moved(int level) {
   Work& work = work_[level];
   Work& coarse = as_landed(level + 1);
   for (const MovedCell& cell : transfers_[level].moved) {
-    const float residual = stencils_[level].residual_at(
-        red, cell.m, cell.j, cell.k, work.b[red].data(), work.x[red].data(), work.x[black].data());
+    const float residual =
+        stencils_[level].residual_at({red, cell.j, cell.k}, cell.m, work.b[red].data(),
+                                     work.x[red].data(), work.x[black].data());
     coarse.b[cell.colour_from][cell.from] -= residual;
     if (cell.to >= 0)
       coarse.b[cell.colour_to][cell.to] += residual;

@@ -236,8 +236,9 @@ void StencilLevel<dim>::copy_faces(const NaturalStencil& stencil) {
 
 template <int dim>
 template <typename Value, typename Kernel>
-inline void StencilLevel<dim>::with_sums(int colour, int j, int k, const Value* other,
+inline void StencilLevel<dim>::with_sums(const Row& cells, const Value* other,
                                          const Kernel& kernel) const {
+  const auto [colour, j, k] = cells;
   const int row = row_index(j, k);
   const Range range = ranges_[row];
   const int shift = (j + k + colour) & 1;
@@ -305,7 +306,7 @@ void StencilLevel<dim>::relax(int colour, int slab, const float* b, const float*
       for (int m = first; m < last; ++m)
         x_row[m] = diagonal.inverse(m) * (b_row[m] + sum(m));
     };
-    with_sums(colour, j, rows.k, other, relax_row);
+    with_sums({colour, j, rows.k}, other, relax_row);
   }
 }
 
@@ -350,9 +351,9 @@ void StencilLevel<dim>::add(int colour, int j, int k, const Range& slots, const 
 }
 
 template <int dim>
-void StencilLevel<dim>::residual(int colour, int j, int k, const float* b, const float* x,
-                                 const float* other, float* residual) const {
-  const std::ptrdiff_t at = grid_.slot(0, j, k);
+void StencilLevel<dim>::residual(const Row& row, const float* b, const float* x, const float* other,
+                                 float* residual) const {
+  const std::ptrdiff_t at = grid_.slot(0, row.j, row.k);
   const float* b_row = b + at;
   const float* x_row = x + at;
   const auto subtract = [=](int first, int last, const auto& sum, const auto& diagonal) {
@@ -362,15 +363,15 @@ void StencilLevel<dim>::residual(int colour, int j, int k, const float* b, const
       residual[m] = diagonal(m) > 0 ? value : 0;
     }
   };
-  with_sums(colour, j, k, other, subtract);
+  with_sums(row, other, subtract);
 }
 
 template <int dim>
-float StencilLevel<dim>::residual_at(int colour, int m, int j, int k, const float* b,
-                                     const float* x, const float* other) const {
-  const std::ptrdiff_t at = grid_.slot(m, j, k);
+float StencilLevel<dim>::residual_at(const Row& row, int m, const float* b, const float* x,
+                                     const float* other) const {
+  const std::ptrdiff_t at = grid_.slot(m, row.j, row.k);
   float result = 0;
-  with_sums(colour, j, k, other, [&](int first, int last, const auto& sum, const auto& diagonal) {
+  with_sums(row, other, [&](int first, int last, const auto& sum, const auto& diagonal) {
     if (first <= m && m < last)
       result = b[at] + sum(m) - diagonal(m) * x[at];
   });
@@ -378,9 +379,9 @@ float StencilLevel<dim>::residual_at(int colour, int m, int j, int k, const floa
 }
 
 template <int dim>
-void StencilLevel<dim>::multiply(int colour, int j, int k, double unit, const double* p,
-                                 const double* other, double* result) const {
-  const std::ptrdiff_t at = grid_.slot(0, j, k);
+void StencilLevel<dim>::multiply(const Row& row, double unit, const double* p, const double* other,
+                                 double* result) const {
+  const std::ptrdiff_t at = grid_.slot(0, row.j, row.k);
   const double* p_row = p + at;
   const auto multiply_row = [=](int first, int last, const auto& sum, const auto& diagonal) {
 #pragma GCC ivdep
@@ -389,7 +390,7 @@ void StencilLevel<dim>::multiply(int colour, int j, int k, double unit, const do
       result[m] = diagonal(m) > 0 ? value : 0;
     }
   };
-  with_sums(colour, j, k, other, multiply_row);
+  with_sums(row, other, multiply_row);
 }
 
 template class StencilLevel<2>;

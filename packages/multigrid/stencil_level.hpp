@@ -65,6 +65,10 @@ class StencilLevel {
   }
   std::size_t bytes() const;
 
+  /// Cells of one colour in row (j, k).
+  struct Row {
+    int colour, j, k;
+  };
   /// x := D^-1 (b + N x_other) on one colour of a slab: a Gauss-Seidel half sweep.
   void relax(int colour, int slab, const float* b, const float* other, float* x) const;
   /// x := D^-1 b on one colour of a slab.
@@ -73,13 +77,13 @@ class StencilLevel {
   /// its range; both begin with slot 0.
   void add(int colour, int j, int k, const Range& slots, const float* correction, float* x) const;
   /// residual := b - (A x) of one row, 0 where there is no unknown, in slots [first, last).
-  void residual(int colour, int j, int k, const float* b, const float* x, const float* other,
+  void residual(const Row& row, const float* b, const float* x, const float* other,
                 float* residual) const;
   /// Returns the residual of one cell, in slot m of the row.
-  float residual_at(int colour, int m, int j, int k, const float* b, const float* x,
+  float residual_at(const Row& row, int m, const float* b, const float* x,
                     const float* other) const;
   /// result := unit A p of one row in double precision, in slots [first, last).
-  void multiply(int colour, int j, int k, double unit, const double* p, const double* other,
+  void multiply(const Row& row, double unit, const double* p, const double* other,
                 double* result) const;
 
   /// The first and one beyond the last row (j) and plane (k) of a slab.
@@ -101,7 +105,7 @@ class StencilLevel {
   /// each times its coefficient, and diagonal(m) its diagonal; some slots may be visited twice
   /// (then with the right ones last).
   template <typename Value, typename Kernel>
-  void with_sums(int colour, int j, int k, const Value* other, const Kernel& kernel) const;
+  void with_sums(const Row& cells, const Value* other, const Kernel& kernel) const;
 
   const LayoutLevel& level_;
   const LevelGrid& grid_;

@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "base/round_off.hpp"
 #include "interfaces/fluid_sides.hpp"
+#include "interfaces/liquid.hpp"
 #include "observers/probes.hpp"
 
 namespace lockstep {
@@ -45,19 +46,71 @@ Box<dim> box_of(const Window<dim>& window) {
   return box;
 }
 
-/// Middles of the pieces of a window, `count` along each edge.
+/// Points of a lattice over a window, `count` + 1 - 2 `inset` along each edge, the first `inset`
+/// pieces away from the corner: of an inset 0.5 the middles of its `count` pieces.
 template <int dim>
-std::vector<Point<dim>> middles_of(const Window<dim>& window,
-                                   const std::array<int, dim - 1>& count) {
+std::vector<Point<dim>> lattice_on(const Window<dim>& window, const std::array<int, dim - 1>& count,
+                                   double inset) {
   std::vector<Point<dim>> points{window.corner};
   for (int k = 0; k < dim - 1; ++k) {
+    const int n = count[k] + 1 - static_cast<int>(2 * inset);
     std::vector<Point<dim>> next;
-    for (int i = 0; i < count[k]; ++i)
+    for (int i = 0; i < n; ++i)
       for (const Point<dim>& x : points)
-        next.push_back(x + (i + 0.5) / count[k] * window.edges[k]);
+        next.push_back(x + (i + inset) / count[k] * window.edges[k]);
     points = std::move(next);
   }
   return points;
+}
+
+/// The part of a piece in which the distance, multilinear between its corners, is negative. Bit k
+/// of a corner's number: upper along edge k.
+template <int n>
+double wet_part(const Point<n>& size, const std::array<double, 1 << n>& corners) {
+  const auto distance = [&](const Point<n>& x) {
+    double sum = 0;
+    for (int corner = 0; corner < 1 << n; ++corner) {
+      double weight = 1;
+      for (int k = 0; k < n; ++k)
+        weight *= (corner >> k) & 1 ? x[k] / size[k] : 1 - x[k] / size[k];
+      sum += weight * corners[corner];
+    }
+    return sum;
+  };
+  const Box<n> part = part_below<n>(distance, Box<n>(Point<n>::Zero(), size));
+  return part.isEmpty() ? 0 : part.volume() / size.prod();
+}
+
+/// The part of each piece of a window that is below the surface of a liquid; 1 everywhere for
+/// fluid that fills its domain, or that goes on above the surface as a gas. Collective.
+template <int dim>
+std::vector<double> wet_parts(const FluidDiscretization<dim>& fluid, const Window<dim>& window,
+                              const std::array<int, dim - 1>& count) {
+  std::size_t n = 1;
+  Point<dim - 1> size;
+  for (int k = 0; k < dim - 1; ++k) {
+    n *= count[k];
+    size[k] = window.edges[k].norm() / count[k];
+  }
+  std::vector<double> parts(n, 1.0);
+  const LiquidFluid<dim>* liquid = fluid.liquid();
+  if (!liquid || liquid->gas_density() > 0)
+    return parts;
+  const std::vector<double> distance = liquid->surface_distances(lattice_on<dim>(window, count, 0));
+  for (std::size_t piece = 0; piece < n; ++piece) {
+    std::array<double, 1 << (dim - 1)> corners;
+    for (int corner = 0; corner < 1 << (dim - 1); ++corner) {
+      std::size_t place = 0, rest = piece, stride = 1;
+      for (int k = 0; k < dim - 1; ++k) {
+        place += stride * (rest % count[k] + ((corner >> k) & 1));
+        rest /= count[k];
+        stride *= count[k] + 1;
+      }
+      corners[corner] = distance[place];
+    }
+    parts[piece] = wet_part<dim - 1>(size, corners);
+  }
+  return parts;
 }
 
 }  // namespace
@@ -198,7 +251,8 @@ std::vector<std::vector<double>> Flow<dim>::observe(const RunView<dim>& run) {
               "In \"{}\", the window of a flow has {:g} squares as large as cells, more than "
               "{:g}; make it smaller.",
               path_, total, most_squares);
-  const std::vector<Point<dim>> points = middles_of<dim>(window, count);
+  const std::vector<Point<dim>> points = lattice_on<dim>(window, count, 0.5);
+  const std::vector<double> wet = wet_parts<dim>(run.fluid, window, count);
   const double area = window.area_vector().norm() / total;
   const Point<dim> normal = window.area_vector().normalized();
   const FluidOutput<dim>& fluid = output_of(run.fluid, this->name());
@@ -209,10 +263,11 @@ std::vector<std::vector<double>> Flow<dim>::observe(const RunView<dim>& run) {
     if (std::abs(normal[a]) < rounding::differences)
       continue;
     const double share = area * normal[a] * normal[a];
-    for (const FlowSample& sample : fluid.flow_across(a, points)) {
-      rate += area * normal[a] * sample.rate;
-      open += share * sample.open;
-      pressure += share * sample.open * sample.pressure;
+    const std::vector<FlowSample> samples = fluid.flow_across(a, points);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      rate += wet[i] * area * normal[a] * samples[i].rate;
+      open += wet[i] * share * samples[i].open;
+      pressure += wet[i] * share * samples[i].open * samples[i].pressure;
     }
   }
   return {{rate, open, open > 0 ? pressure / open : 0}};

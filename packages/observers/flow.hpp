@@ -22,7 +22,8 @@ struct Window {
 };
 
 /// Volume that flows through a window, by the midpoint rule over pieces of at most the fluid's h;
-/// what solids cover lets nothing through, and a face that they cover in part the open part.
+/// what solids cover lets nothing through, a face that they cover in part the open part, and of a
+/// piece that the surface of a liquid crosses the wet part counts, unless there is a gas above.
 template <int dim>
 class Flow : public Observer<dim> {
  public:

@@ -59,9 +59,9 @@ bool pushes_cancel(int bubble, const GasProblem& gas, const BlockVector& rhs) {
 }
 
 /// Solves for p̂ = 1 in one bubble; empty if nothing that it pushes on can open it.
-std::optional<Answer> answer_to(int bubble, const GasProblem& gas, SolverStrategy& strategy,
-                                const BlockSystem& blocks, const SolveRequest& request,
+std::optional<Answer> answer_to(int bubble, const GasProblem& gas, const BlockSolver& solver,
                                 const BlockVector& like, SolveReport& report) {
+  const auto& [strategy, blocks, request] = solver;
   const auto zero = [](const RCP<Vector>& v) {
     return v.is_null() ? RCP<Vector>() : make_vector(v->getMap());
   };
@@ -100,8 +100,7 @@ double implicit_part(double stiffness_times_answer) {
 }
 }  // namespace
 
-std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strategy,
-                                   const BlockSystem& blocks, const SolveRequest& request,
+std::vector<double> solve_with_gas(const GasProblem& gas, const BlockSolver& solver,
                                    BlockVector& rhs, BlockVector& unknowns, SolveReport& report) {
   const int n = static_cast<int>(gas.bubbles.size());
   std::vector<double> pressure(n, 0);
@@ -109,7 +108,7 @@ std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strate
     if (gas.with_springs || gas.bubbles[k].keeps_volume)
       pressure[k] = gas.dt * gas.bubbles[k].pressure;
   gas.push(pressure, rhs);
-  report = strategy.solve(blocks, rhs, unknowns, request);
+  report = solver.strategy.solve(solver.blocks, rhs, unknowns, solver.request);
 
   const double dt = gas.dt;
   std::vector<Answer> answers;
@@ -121,7 +120,7 @@ std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strate
         !unknowns.solid.is_null() || stiff * gas.conductance[k] > 1;  // solids answer, too
     if (!bubble.keeps_volume && !(gas.with_springs && may_be_stiff))
       continue;
-    std::optional<Answer> answer = answer_to(k, gas, strategy, blocks, request, unknowns, report);
+    std::optional<Answer> answer = answer_to(k, gas, solver, unknowns, report);
     if (!answer)
       continue;
     const double part = bubble.keeps_volume ? 1 : implicit_part(stiff * answer->rates[k]);

@@ -24,12 +24,18 @@ struct GasProblem {
   std::function<std::vector<double>(const BlockVector& unknowns, bool is_change)> rates;
 };
 
+/// A strategy that is prepared for the blocks, and what is asked of its solutions.
+struct BlockSolver {
+  SolverStrategy& strategy;
+  const BlockSystem& blocks;
+  SolveRequest request;
+};
+
 /// Solves with the pressures of the bubbles, which it returns as p̂, and adds their push to `rhs`.
 /// A bubble whose oscillation the step resolves is explicit: it pushes with the pressure of its
 /// volume. One that is too stiff, or keeps its volume, is implicit: one more solve each, and a
 /// small dense system. `report` sums up all solves. Collective.
-std::vector<double> solve_with_gas(const GasProblem& gas, SolverStrategy& strategy,
-                                   const BlockSystem& blocks, const SolveRequest& request,
+std::vector<double> solve_with_gas(const GasProblem& gas, const BlockSolver& solver,
                                    BlockVector& rhs, BlockVector& unknowns, SolveReport& report);
 
 }  // namespace lockstep

@@ -232,77 +232,77 @@ double dissipation(const ViscousSystem<dim>& system, const ViscousCouplings<dim>
   return dot(velocity, pull) + sum_all(comm, links.dissipation(velocity, ends, couple_pull));
 }
 
-}  // namespace
-
+/// Sets the right-hand side, in which prescribed solids and given dofs pull on resting fluid, and
+/// the guess: the velocities before.
 template <int dim>
-ViscousResult<dim> solve_viscous(
-    const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid, const SolidSystem<dim>& solids,
-    const ViscousCoupling<dim>& coupling, const RCP<const LinearOperator>& solid_block,
-    const NearNullSpace& near_null_space, const RCP<const Vector>& lumped_momentum, double dt,
-    const Reduction& constraints, const ViscousOptions& options, bool with_dissipation) {
-  // Where the solve is for surface tension alone, nothing ties solids to it.
-  const bool with_solids =
-      solids.has_unknowns() &&
-      sum_all(solids.comm(), static_cast<GlobalIndex>(system.links.size())) > 0;
-  const ViscousCouplings<dim> links(system, solids, coupling);
-  const ViscousOperator<dim> op{
-      system,      links, solid_block,
-      constraints, dt,    ViscousRows(system.map, with_solids ? solids.map() : RCP<const Map>())};
+void set_up_equation(const ViscousOperator<dim>& op, const SolidSystem<dim>& solids,
+                     const RCP<const Vector>& lumped_momentum, Vector& rhs, Vector& guess) {
+  const RCP<const Vector> given = op.links.end_velocity(op.constraints.offset(), true);
+  const RCP<Vector> prescribed = op.links.pull(*make_vector(op.system.map), *given);
+  const RCP<Vector> momentum = op.rows.fluid_of(rhs);
+  momentum->elementWiseMultiply(1, *op.system.mass, *op.system.velocity, 0);
+  momentum->update(op.dt, *op.system.wall_force, 1);
+  op.links.take_from_fluid(op.dt, *prescribed, false, *momentum);
+  op.rows.fluid_of(guess)->update(1, *op.system.velocity, 0);
+  if (op.rows.solid.is_null())
+    return;
+  Vector pulled(*lumped_momentum, Teuchos::Copy);
+  prescribed->update(1, *op.links.couple_pull(*given), 1);
+  op.links.pull_on_solids(op.dt, *prescribed, 1, pulled);
+  op.constraints.restrict(pulled);
+  op.rows.solid_of(rhs)->update(1, pulled, 0);
+  const RCP<Vector> before = solids.velocity();
+  op.constraints.select(*before);
+  op.rows.solid_of(guess)->update(1, *before, 0);
+}
 
-  // The pull of prescribed solids and given dofs on resting fluid, on the right-hand side.
-  const RCP<const Vector> given = links.end_velocity(constraints.offset(), true);
-  const RCP<Vector> prescribed = links.pull(*make_vector(system.map), *given);
-  Vector rhs(op.rows.all), x(op.rows.all);
-  {
-    const RCP<Vector> momentum = op.rows.fluid_of(rhs);
-    momentum->elementWiseMultiply(1, *system.mass, *system.velocity, 0);
-    momentum->update(dt, *system.wall_force, 1);
-    links.take_from_fluid(dt, *prescribed, false, *momentum);
-  }
-  op.rows.fluid_of(x)->update(1, *system.velocity, 0);
-  if (with_solids) {
-    Vector pulled(*lumped_momentum, Teuchos::Copy);
-    prescribed->update(1, *links.couple_pull(*given), 1);
-    links.pull_on_solids(dt, *prescribed, 1, pulled);
-    constraints.restrict(pulled);
-    op.rows.solid_of(rhs)->update(1, pulled, 0);
-    const RCP<Vector> guess = solids.velocity();
-    constraints.select(*guess);
-    op.rows.solid_of(x)->update(1, *guess, 0);
-  }
-  ViscousResult<dim> result;
-  result.iterations = solve_from_guess<dim>(
-      op, make_preconditioner<dim>(op, near_null_space, options), rhs, x, options);
-
-  const RCP<const Vector> fluid_velocity = op.rows.fluid_of(std::as_const(x));
-  if (with_solids) {
-    result.solid_velocity = rcp(new Vector(*op.rows.solid_of(x), Teuchos::Copy));
-    constraints.expand(*result.solid_velocity);
-  } else if (solids.has_unknowns()) {
-    result.solid_velocity = solids.velocity();
-  }
-  const RCP<const Vector> ends = links.end_velocity(result.solid_velocity, true);
-  const RCP<const Vector> pull = links.pull(*fluid_velocity, *ends);
-  const RCP<const Vector> couple_pull = links.couple_pull(*ends);
-  if (solids.has_unknowns()) {
-    result.solid_impulse = make_vector(solids.map());
-    links.pull_on_solids(dt, *pull, 0, *result.solid_impulse);
-    links.pull_on_solids(dt, *couple_pull, 1, *result.solid_impulse);
-  }
-  if (with_dissipation)
-    result.dissipation =
-        dissipation<dim>(system, links, *fluid_velocity, *ends, *couple_pull, solids.comm());
-  // u = u* + M^-1 (impulses of the solution): momentum is exact, the residual of CG shows in u
-  // alone.
+/// u = u* + M^-1 (impulses of the solution x): momentum is exact, the residual of CG shows in u
+/// alone.
+template <int dim>
+Vector exact_velocity(const ViscousOperator<dim>& op, const Vector& rhs, const Vector& x) {
   Vector residual(op.rows.all);
   op.apply_to(x, residual);
   residual.update(1, rhs, -1);
-  Vector velocity(*fluid_velocity, Teuchos::Copy), mass_inverse(system.map);
-  mass_inverse.reciprocal(*system.mass);
+  Vector velocity(*op.rows.fluid_of(x), Teuchos::Copy), mass_inverse(op.system.map);
+  mass_inverse.reciprocal(*op.system.mass);
   velocity.elementWiseMultiply(1, mass_inverse, *op.rows.fluid_of(residual), 1);
-  result.boundary_impulse = fluid.accept_viscous(*fluid_velocity, velocity, dt);
+  return velocity;
+}
+
+/// Velocities of all dofs in the solution x; null without unknowns.
+template <int dim>
+RCP<Vector> solid_velocity_of(const ViscousOperator<dim>& op, const SolidSystem<dim>& solids,
+                              const Vector& x) {
+  if (op.rows.solid.is_null())
+    return solids.has_unknowns() ? solids.velocity() : RCP<Vector>();
+  const auto velocity = rcp(new Vector(*op.rows.solid_of(x), Teuchos::Copy));
+  op.constraints.expand(*velocity);
+  return velocity;
+}
+
+/// Gives the fluid its velocity of the solution x, and returns what solids and sides get of it.
+template <int dim>
+ViscousResult<dim> accept_solution(const ViscousOperator<dim>& op, const ViscousParts<dim>& parts,
+                                   bool with_dissipation, const Vector& rhs, const Vector& x) {
+  const SolidSystem<dim>& solids = parts.solids;
+  ViscousResult<dim> result;
+  const RCP<const Vector> fluid_velocity = op.rows.fluid_of(x);
+  result.solid_velocity = solid_velocity_of<dim>(op, solids, x);
+  const RCP<const Vector> ends = op.links.end_velocity(result.solid_velocity, true);
+  const RCP<const Vector> pull = op.links.pull(*fluid_velocity, *ends);
+  const RCP<const Vector> couple_pull = op.links.couple_pull(*ends);
+  if (solids.has_unknowns()) {
+    result.solid_impulse = make_vector(solids.map());
+    op.links.pull_on_solids(op.dt, *pull, 0, *result.solid_impulse);
+    op.links.pull_on_solids(op.dt, *couple_pull, 1, *result.solid_impulse);
+  }
+  if (with_dissipation)
+    result.dissipation =
+        dissipation<dim>(op.system, op.links, *fluid_velocity, *ends, *couple_pull, solids.comm());
+  result.boundary_impulse =
+      parts.fluid.accept_viscous(*fluid_velocity, exact_velocity<dim>(op, rhs, x), op.dt);
   std::vector<Momentum<dim>> impulses(solids.solids().size());
-  impulses.push_back(links.impulse(*pull, *couple_pull, dt, impulses));
+  impulses.push_back(op.links.impulse(*pull, *couple_pull, op.dt, impulses));
   sum_over_ranks(solids.comm(), impulses);
   result.boundary_impulse += total_of(impulses);
   impulses.pop_back();
@@ -310,15 +310,30 @@ ViscousResult<dim> solve_viscous(
   return result;
 }
 
-template ViscousResult<2> solve_viscous<2>(const ViscousSystem<2>&, ViscousFluid<2>&,
-                                           const SolidSystem<2>&, const ViscousCoupling<2>&,
-                                           const RCP<const LinearOperator>&, const NearNullSpace&,
-                                           const RCP<const Vector>&, double, const Reduction&,
-                                           const ViscousOptions&, bool);
-template ViscousResult<3> solve_viscous<3>(const ViscousSystem<3>&, ViscousFluid<3>&,
-                                           const SolidSystem<3>&, const ViscousCoupling<3>&,
-                                           const RCP<const LinearOperator>&, const NearNullSpace&,
-                                           const RCP<const Vector>&, double, const Reduction&,
-                                           const ViscousOptions&, bool);
+}  // namespace
+
+template <int dim>
+ViscousResult<dim> solve_viscous(const ViscousParts<dim>& parts, const ViscousRequest& request) {
+  const auto& [system, fluid, solids, coupling, solid_block, near_null_space] = parts;
+  // Where the solve is for surface tension alone, nothing ties solids to it.
+  const bool with_solids =
+      solids.has_unknowns() &&
+      sum_all(solids.comm(), static_cast<GlobalIndex>(system.links.size())) > 0;
+  const ViscousCouplings<dim> links(system, solids, coupling);
+  const ViscousOperator<dim> op{
+      system,      links,
+      solid_block, request.constraints,
+      request.dt,  ViscousRows(system.map, with_solids ? solids.map() : RCP<const Map>())};
+  Vector rhs(op.rows.all), x(op.rows.all);
+  set_up_equation<dim>(op, solids, request.lumped_momentum, rhs, x);
+  const int iterations = solve_from_guess<dim>(
+      op, make_preconditioner<dim>(op, near_null_space, request.options), rhs, x, request.options);
+  ViscousResult<dim> result = accept_solution<dim>(op, parts, request.with_dissipation, rhs, x);
+  result.iterations = iterations;
+  return result;
+}
+
+template ViscousResult<2> solve_viscous<2>(const ViscousParts<2>&, const ViscousRequest&);
+template ViscousResult<3> solve_viscous<3>(const ViscousParts<3>&, const ViscousRequest&);
 
 }  // namespace lockstep

@@ -21,18 +21,32 @@ struct ViscousResult {
   int iterations = 0;
 };
 
+/// Fluid and solids that implicit viscosity couples.
+template <int dim>
+struct ViscousParts {
+  const ViscousSystem<dim>& system;  ///< system of `fluid`
+  ViscousFluid<dim>& fluid;
+  const SolidSystem<dim>& solids;
+  const ViscousCoupling<dim>& coupling;
+  RCP<const LinearOperator> solid_block;  ///< the reduced C; null without unknowns
+  NearNullSpace near_null_space;          ///< rigid motions of the nodes, for `solid_block`
+};
+
+struct ViscousRequest {
+  RCP<const Vector> lumped_momentum;  ///< row 2 of all dofs, less C b; null without unknowns
+  double dt = 0;                      ///< over which viscosity acts [s]
+  const Reduction& constraints;       ///< constraints of the solids' dofs
+  const ViscousOptions& options;
+  bool with_dissipation = false;
+};
+
 /// Implicit viscosity over dt, coupled to the solids: conjugate gradients on
 ///   [ M_f + dt K_ff   dt K_fs              ] [ u   ]   [ M_f u*                          ]
 ///   [ dt K_sf         M̃_S - dt D + dt K_ss ] [ V_S ] = [ M_S V_S* + W^T M_F u*_F        ]
 /// The fluid keeps u; of the solid only its viscous impulse is used, so that its own forces are not
-/// applied twice. `lumped_momentum` is row 2 of all dofs, less C b, and `solid_block` is the
-/// reduced C; both null without unknowns. Throws SolveError with the numbers if the options'
-/// tolerance is not reached. Collective.
+/// applied twice. Throws SolveError with the numbers if the options' tolerance is not reached.
+/// Collective.
 template <int dim>
-ViscousResult<dim> solve_viscous(
-    const ViscousSystem<dim>& system, ViscousFluid<dim>& fluid, const SolidSystem<dim>& solids,
-    const ViscousCoupling<dim>& coupling, const RCP<const LinearOperator>& solid_block,
-    const NearNullSpace& near_null_space, const RCP<const Vector>& lumped_momentum, double dt,
-    const Reduction& constraints, const ViscousOptions& options, bool with_dissipation = false);
+ViscousResult<dim> solve_viscous(const ViscousParts<dim>& parts, const ViscousRequest& request);
 
 }  // namespace lockstep

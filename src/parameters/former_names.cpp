@@ -42,6 +42,7 @@ const std::vector<FormerName>& former_names() {
       {"", "Directions", "is called \"Locked\" now"},
       {"", "Release Time", "is called \"End\" now"},
       {"", "Load", "is gone: \"Force\" and \"Torque\" may be formulas, with table(t, ...)"},
+      {"Solids", "Tension Only", "is gone: a spring that only pulls is of type \"rope\""},
       // Joints.
       {"Joints", "Lower Limit", "is called \"Lower\" now and stands in the list \"Limits\""},
       {"Joints", "Upper Limit", "is called \"Upper\" now and stands in the list \"Limits\""},

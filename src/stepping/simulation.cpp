@@ -14,6 +14,7 @@
 #include "output/xdmf.hpp"
 #include "parameters/mistakes.hpp"
 #include "parameters/write.hpp"
+#include "stepping/settle.hpp"
 #include "stepping/surface_frames.hpp"
 
 namespace lockstep {
@@ -127,6 +128,12 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
     components_.strategy = std::move(dumping);
   }
   ScopedStage stage(timers_, "start");
+  if (scene.sublist("Time").get<bool>("Settle") && options.restart_file.empty())
+    settle<dim>(
+        [&](const ParameterList& list) {
+          return build_components<dim>(registries, list, options.scene_file, comm);
+        },
+        scene_, scene_options_, components_, log_);
   scene_options_.step.energy_budget = observers_.want_energy();
   scheme_ = std::make_unique<TimeScheme<dim>>(components_, scene_options_.step,
                                               scene_options_.time.start, timers_);

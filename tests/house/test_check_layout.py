@@ -81,6 +81,14 @@ class Rules(unittest.TestCase):
         self.assertEqual(len(self.found({"src/base/a.hpp": f"int f({six}, int g);\n"})), 1)
         self.assertEqual(self.found({"src/base/a.cpp": "  return f(a + b, c, d, e, f, g, h);\n"}), [])
 
+    def test_parameters_of_definitions(self):
+        six = "int, C<int, int> a, void (*b)(int, int), int c,\n     int d, int e"
+        self.assertEqual(self.found({"src/base/a.cpp": f"A::A({six}) : a_(a, 1) {{\n}}\n"}), [])
+        for text in (f"template <int dim>\nA<dim>::A({six}, int f)\n    : a_(a), b_{{b}} {{\n}}\n", f"static int g({six}, int) {{\n}}\n"):
+            with self.subTest(text=text):
+                self.assertEqual(len(self.found({"src/base/a.cpp": text})), 1)
+        self.assertEqual(self.found({"src/base/a.cpp": f"template int g({six}, int);\n"}), [])
+
     def test_full_folders(self):
         files = {f"src/base/a{i}.cpp": "" for i in range(39)}
         self.assertEqual(self.found(files), [])

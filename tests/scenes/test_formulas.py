@@ -138,17 +138,40 @@ class Sides(unittest.TestCase):
         self.assertGreater(coarse / fine, 1.8)  # errors of first order in the step
         self.assertLess(self.stokes_layer(3, 16), 1.1 * coarse)
 
-    def test_a_pressure_that_grows_speeds_fluid_up(self):
-        """p = t at one end: u = t^2/(2 rho L), all along."""
+    def channel_rows(self, dimension, lower, upper, steps, step):
+        sides = {f"{a} {e}": {"Type": "slip wall"} for a in AXES[1:dimension] for e in ("lower", "upper")}
+        sides.update({"x lower": {"Type": "open", **lower}, "x upper": {"Type": "open", **upper}})
+        rows, _ = self.run_scene(dimension, (8,) * dimension, {}, sides, steps, step)
+        self.assertLess(max(column(rows, "momentum_error")), 1e-9)
+        return rows
+
+    def test_a_pressure_that_falls_draws_fluid_out(self):
+        """p = -t at the end where it leaves: u = t^2/(2 rho L), all along."""
         for dimension in (2, 3):
             for end in (0, 1):
                 with self.subTest(dimension=dimension, end=end):
-                    sides = {f"{a} {e}": {"Type": "slip wall"} for a in AXES[1:dimension] for e in ("lower", "upper")}
-                    ends = [{"Type": "open"}, {"Type": "open", "Pressure": "t"}]
-                    sides.update({"x upper": ends[end], "x lower": ends[1 - end]})
-                    rows, _ = self.run_scene(dimension, (8,) * dimension, {}, sides, 10, .05)
-                    self.assertAlmostEqual(column(rows, "fluid_momentum_x")[-1], (-1 if end else 1) * .5 ** 2 / 2, delta=1e-9)
-                    self.assertLess(max(column(rows, "momentum_error")), 1e-9)
+                    ends = [{"Pressure": "-t"}, {}]
+                    rows = self.channel_rows(dimension, ends[end], ends[1 - end], 10, .05)
+                    self.assertAlmostEqual(column(rows, "fluid_momentum_x")[-1], (1 if end else -1) * .5 ** 2 / 2, delta=1e-9)
+
+    def test_a_channel_between_two_reservoirs(self):
+        """rho L du/dt = p - rho u^2/2: u = U tanh(U t/2L), U = sqrt(2 p/rho) = 1, and never more; by momentum, 2 kg."""
+        for dimension in (2, 3):
+            for end in (0, 1):
+                with self.subTest(dimension=dimension, end=end):
+                    ends = [{}, {"Pressure": 1.}]
+                    rows = self.channel_rows(dimension, ends[1 - end], ends[end], 160, .1)
+                    speed = [(-1 if end else 1) * u / 2 for u in column(rows, "fluid_momentum_x")]
+                    self.assertAlmostEqual(speed[-1], 1, delta=1e-6)
+                    self.assertLess(max(speed), 1 + 1e-9)
+                    for time, u in zip(column(rows, "time"), speed):
+                        self.assertAlmostEqual(u, math.tanh(time / 2), delta=.02)
+
+    def test_long_steps_of_what_comes_in_stay_bounded(self):
+        """The side takes no more than it has: in steps of c > 1 cells at most sqrt(c) as fast."""
+        speed = column(self.channel_rows(2, {"Pressure": 1.}, {}, 60, .5), "fluid_momentum_x")[-1] / 2
+        self.assertGreater(speed, 1)
+        self.assertLess(speed, 5)
 
     def test_the_pressure_of_still_water_holds_a_tank_that_is_open(self):
         for dimension in (2, 3):
@@ -162,12 +185,27 @@ class Sides(unittest.TestCase):
                     self.assertLess(max(column(rows, "fluid_kinetic_energy")), 1e-14)
 
     def test_a_higher_tailwater_fills_the_tank_with_liquid(self):
+        """By a wave .1 m high, as shallow water has it, and no faster than it falls from there."""
         side = {"Type": "open", "Pressure": "2*10*max(0.6 - y, 0)"}
         surface = {"Liquid": {"Pool": {"Type": "level", "Height": .5}}}
-        rows, _ = self.run_scene(2, (24, 24), {"Gravity": down(2), "Free Surface": surface},
-                                 {"x lower": side, "y upper": {"Type": "open"}}, 40, .01)
+        points = tuple(x for i in range(12) for x in (.02, .02 + .05 * i))
+        rows, probes = self.run_scene(2, (48, 48), {"Gravity": down(2), "Free Surface": surface},
+                                      {"x lower": side, "y upper": {"Type": "open"}}, 40, .01, points)
         volume = column(rows, "liquid_volume")
-        self.assertGreater(volume[-1] - volume[0], .03)  # air came in before, below the level
+        self.assertGreater(volume[-1] - volume[0], .04)  # air came in before, below the level
+        self.assertLess(volume[-1] - volume[0], .08)
+        self.assertLess(max(float(row["vx"]) for row in probes), 2**.5)
+
+    def test_water_comes_in_no_faster_than_it_falls(self):
+        """From a level .5 m above the floor of an empty tank, at sqrt(2 g .5) at most: Torricelli's law."""
+        side = {"Type": "open", "Pressure": "2*10*max(0.5 - y, 0)"}
+        surface = {"Liquid": {"Pool": {"Type": "box", "Lower": (-1., -1.), "Upper": (.125, .5)}}}
+        points = tuple(x for i in range(6) for x in (.03, .04 + .08 * i))
+        _, probes = self.run_scene(2, (64, 16), {"Gravity": down(2), "Free Surface": surface},
+                                   {"x lower": side, "x upper": {"Type": "open"}, "y upper": {"Type": "open"}}, 150, .01, points, (4., 1.))
+        fastest = max(float(row["vx"]) for row in probes)
+        self.assertGreater(fastest, .6 * 10 ** .5)
+        self.assertLess(fastest, 1.05 * 10 ** .5)
 
     def test_openings_let_in_what_a_formula_says(self):
         """A pulse of half a second through half of a side."""

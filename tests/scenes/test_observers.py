@@ -69,6 +69,24 @@ class Flows(Observers):
         rows, = self.tables(text, *observers)
         self.assertAlmostEqual(float(rows[0]["volume_rate"]), ((.9 - .5)**2 - (.2 - .5)**2) / 2, delta=1e-12)
 
+    def test_of_a_liquid_the_wet_part_flows(self):
+        """Water .53 m deep, in cells of 1/16 m, that goes along at 1 m/s without gravity; wherever the window lies on the grid."""
+        for dimension in (2, 3):
+            pool = {"Type": "box", "Lower": (-1.,) * dimension, "Upper": (2., .53) + (2.,) * (dimension - 2)}
+            sides = {**PERIODIC, "y lower": {"Type": "slip wall"}, "y upper": {"Type": "open"}}
+            fluid = {"Velocity": (1.,) + (0.,) * (dimension - 1)}
+            across = lambda x, top: {"Type": "flow", "Lower": (x, 0.) + (.1,) * (dimension - 2), "Upper": (x, top) + (1.1,) * (dimension - 2)}  # noqa: E731
+            observers = {"whole": across(.5, 1.), "other": across(.53, .97), "wet": across(.5, .5), "dry": {
+                "Type": "flow", "Lower": (.5, .6) + (.1,) * (dimension - 2), "Upper": (.5, 1.) + (1.1,) * (dimension - 2)}}
+            for interface in ("level set", "volume of fluid"):
+                with self.subTest(dimension=dimension, interface=interface):
+                    fluid["Free Surface"] = {"Liquid": {"Pool": pool}, "Interface": {"Type": interface}}
+                    tables = self.tables(scene(dimension, observers, fluid=fluid, sides=sides), *observers)
+                    for rows, wanted in zip(tables, (.53, .53, .5, 0)):
+                        for row in rows:
+                            self.assertAlmostEqual(float(row["volume_rate"]), wanted, delta=1e-6)
+                            self.assertAlmostEqual(float(row["open_area"]), wanted, delta=1e-6)
+
     def test_both_ways_to_give_a_window_agree(self):
         """A solid stands in some of them."""
         for dimension, box, points in ((2, ((.5, .1), (.5, 1.)), (.5, .1, .5, 1.)), (2, ((.1, .5), (.9, .5)), (.9, .5, .1, .5)),

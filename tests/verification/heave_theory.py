@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Motion of a half-submerged disc that is let go off its draft, by linear theory: prints the numbers that
-the study heave-decay refers to, and fails if that file has others.
+"""Motion of a half-submerged disc that is let go off its draft, or that waves move, by linear theory: prints the numbers that
+the studies heave-decay and buoy-in-waves refer to, and fails if these files have others.
 
 Units of the disc's radius, gravity and the water's density. Added mass A and damping B of a heaving disc come from
 Ursell's (1949) source and wave-free multipoles, the motion from
     (M + A_inf) x'' + int_0^t K(t - s) x'(s) ds + 2 x = 0,   K(t) = 2/pi int_0^inf B(w) cos(w t) dw,
 as Maskell and Ursell (1970) posed it, in boundless water; in the closed tank of the study, whose walls make a difference of 2 to 14 %,
-by boundary elements. usage: heave_theory.py STUDY.xml
+by boundary elements. Waves of amplitude a push with a sqrt(B/w), by Haskind's relation. usage: heave_theory.py HEAVE-DECAY.xml
+BUOY-IN-WAVES.xml
 """
 import re
 import sys
@@ -37,6 +38,12 @@ def added_mass_and_damping(frequency, n_multipoles=24, n_points=96):
     pressure = 1j * frequency * (np.array(potentials).T @ strengths)
     force = -2 * np.sum(pressure * np.cos(theta)) * (np.pi / 2 / n_points)
     return force.imag / frequency, -force.real
+
+
+def response(frequency):
+    """Amplitude of the heave over that of the waves."""
+    added, damping = added_mass_and_damping(frequency)
+    return np.sqrt(damping / frequency) / abs(STIFFNESS - frequency**2 * (MASS + added) + 1j * frequency * damping)
 
 
 def swing(end=9.0, dt=0.01):
@@ -145,6 +152,13 @@ def main():
         stated = float(reference)
         print(f"{name}: {number:.5f} in the study's tank; the study has {stated:.5f}")
         wrong = wrong or abs(stated / number - 1) > 0.001
+    # Long waves carry the disc along.
+    assert abs(response(0.05) - 1) < .01
+    text = open(sys.argv[2]).read()
+    stated = re.findall(r'name="response" type="double" value="([^"]*)"', text)
+    for frequency, number in zip(map(float, re.findall(r'ParameterList name="w = ([0-9.]*)"', text)), map(float, stated)):
+        print(f"w = {frequency}: {response(frequency):.4f}; the study has {number}")
+        wrong = wrong or abs(number / response(frequency) - 1) > 0.001
     sys.exit(1 if wrong else 0)
 
 

@@ -75,7 +75,7 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
   };
   for (const auto& [i, j] : meeting_pairs<dim>(boxes, any_moves)) {
     if (!solids[i].rigid || !solids[j].rigid) {
-      add_surface_contacts(shapes, motion, primitives, reach, i, j, contacts);
+      add_surface_contacts(primitives, motion, reach, i, j, contacts);
       continue;
     }
     VertexContacts<dim>(shapes, motion, reach, i, j).find(contacts);
@@ -88,7 +88,7 @@ std::vector<Contact<dim>> find_contacts(const ContactShapes<dim>& shapes,
     if (solid.prescribed || solid.simplex_begin == solid.simplex_end || shapes.is_image(i))
       continue;
     if (!solid.rigid)
-      add_surface_contacts(shapes, motion, primitives, reach, i, i, contacts);
+      add_surface_contacts(primitives, motion, reach, i, i, contacts);
     for (const HalfSpace& wall : walls) {
       const double nearest = wall.sign > 0 ? boxes[i].min()[wall.axis] - wall.coordinate
                                            : wall.coordinate - boxes[i].max()[wall.axis];

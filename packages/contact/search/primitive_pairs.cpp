@@ -68,7 +68,7 @@ class PairFinder {
     const int first_vertex = shapes_.solids()[solid].vertex_begin;
     const int first_simplex = shapes_.solids()[other].simplex_begin;
     add<1, dim>(
-        PrimitiveKind::vertex_simplex, solid, vertices, other, simplices,
+        solid, vertices, other, simplices,
         [&](int i) {
           const int v = first_vertex + i;
           return Primitive<1>{{v}, shapes_.at_vertex(v).simplex};
@@ -84,15 +84,18 @@ class PairFinder {
       return Primitive<2>{edge.vertices, edge.simplices[0]};
     };
     add<2, 2>(
-        PrimitiveKind::edge_edge, solid, edges, other, others,
-        [&](int i) { return edge_of(solid, i); }, [&](int j) { return edge_of(other, j); });
+        solid, edges, other, others, [&](int i) { return edge_of(solid, i); },
+        [&](int j) { return edge_of(other, j); });
   }
 
  private:
-  /// `first` and `second` make primitives of their numbers in the trees.
+  /// Vertices against simplices, or edges against edges. `first` and `second` make primitives of
+  /// their numbers in the trees.
   template <int n, int m, typename First, typename Second>
-  void add(PrimitiveKind kind, int solid, const BoxTree<dim>& first_tree, int other,
-           const BoxTree<dim>& second_tree, const First& first, const Second& second) {
+  void add(int solid, const BoxTree<dim>& first_tree, int other, const BoxTree<dim>& second_tree,
+           const First& first, const Second& second) {
+    constexpr PrimitiveKind kind =
+        n == 1 ? PrimitiveKind::vertex_simplex : PrimitiveKind::edge_edge;
     std::vector<int> near_both, found;
     first_tree.touching(region_, near_both);
     const auto is_second = [&](int i, int j) {

@@ -22,6 +22,7 @@ class PrimitivePairs {
   /// Boxes that hold one vertex each.
   PrimitivePairs(const ContactShapes<dim>& shapes, std::vector<Box<dim>> vertex_boxes);
 
+  const ContactShapes<dim>& shapes() const { return shapes_; }
   /// Goes through all pairs of primitives of two solids (or of one with itself) whose boxes come
   /// closer than `margin` in every direction; what contact cannot move is left out. The order does
   /// not depend on the ranks.

@@ -182,9 +182,10 @@ class SurfaceContacts {
 }  // namespace
 
 template <int dim>
-void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
-                          PrimitivePairs<dim>& primitives, const ContactReach& reach, int solid,
-                          int other, std::vector<Contact<dim>>& contacts) {
+void add_surface_contacts(PrimitivePairs<dim>& primitives, const SolidMotion<dim>& motion,
+                          const ContactReach& reach, int solid, int other,
+                          std::vector<Contact<dim>>& contacts) {
+  const ContactShapes<dim>& shapes = primitives.shapes();
   double range = reach.near + reach.half_thickness[solid] + reach.half_thickness[other];
   const bool any_closed = shapes.solids()[solid].closed || shapes.solids()[other].closed;
   if (solid != other && any_closed)
@@ -200,11 +201,9 @@ void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<di
   primitives.for_each(range, solid, other, [&](const auto& pairs) { found.add(pairs); });
 }
 
-template void add_surface_contacts<2>(const ContactShapes<2>&, const SolidMotion<2>&,
-                                      PrimitivePairs<2>&, const ContactReach&, int, int,
-                                      std::vector<Contact<2>>&);
-template void add_surface_contacts<3>(const ContactShapes<3>&, const SolidMotion<3>&,
-                                      PrimitivePairs<3>&, const ContactReach&, int, int,
-                                      std::vector<Contact<3>>&);
+template void add_surface_contacts<2>(PrimitivePairs<2>&, const SolidMotion<2>&,
+                                      const ContactReach&, int, int, std::vector<Contact<2>>&);
+template void add_surface_contacts<3>(PrimitivePairs<3>&, const SolidMotion<3>&,
+                                      const ContactReach&, int, int, std::vector<Contact<3>>&);
 
 }  // namespace lockstep

@@ -15,9 +15,9 @@ namespace lockstep {
 ///
 /// `primitives`: with boxes of vertices that hold their points alone.
 template <int dim>
-void add_surface_contacts(const ContactShapes<dim>& shapes, const SolidMotion<dim>& motion,
-                          PrimitivePairs<dim>& primitives, const ContactReach& reach, int solid,
-                          int other, std::vector<Contact<dim>>& contacts);
+void add_surface_contacts(PrimitivePairs<dim>& primitives, const SolidMotion<dim>& motion,
+                          const ContactReach& reach, int solid, int other,
+                          std::vector<Contact<dim>>& contacts);
 
 /// Point at which an impulse acts on both sides: on the surface that bends, for a rigid body
 /// carries any point exactly.

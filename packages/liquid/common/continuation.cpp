@@ -104,8 +104,8 @@ void Continuation<dim>::find_layers(const MacDomain<dim>& domain, const SolidCel
 /// Extrapolates phi linearly from a neighbour, along the axis from it to the cell [m].
 template <int dim>
 double Continuation<dim>::led_to(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
-                                 const CellField& phi, int other, int axis, int side,
-                                 int layer) const {
+                                 const CellField& phi, int other, int direction, int layer) const {
+  const int axis = direction / 2, side = direction % 2;
   const int beyond = grid.neighbor(other, axis, side);
   if (beyond < 0 || layer_of_[beyond] >= layer)
     return phi[other];
@@ -138,7 +138,7 @@ void Continuation<dim>::into_solids(const MacDomain<dim>& domain, const SolidCel
         if (at.from >> i & 1) {
           const int other = grid.neighbor(at.cell, i / 2, i % 2);
           const double weight = std::max(0.0, 1 - (std::abs(phi[other]) - least) / (0.5 * h));
-          sum += weight * led_to(grid, solids, phi, other, i / 2, i % 2, layer);
+          sum += weight * led_to(grid, solids, phi, other, i, layer);
           weights += weight;
         }
       values.push_back(std::clamp(sum / weights, -cut_off, cut_off));

@@ -35,8 +35,9 @@ class Continuation {
 
  private:
   void find_layers(const MacDomain<dim>& domain, const SolidCells<dim>& solids);
+  /// `direction`: 2 axis + side.
   double led_to(const TiledGrid<dim>& grid, const SolidCells<dim>& solids, const CellField& phi,
-                int other, int axis, int side, int layer) const;
+                int other, int direction, int layer) const;
 
   int n_layers_;
   std::shared_ptr<const SurfaceSnapshot<dim>> surface_;  ///< whose layers these are

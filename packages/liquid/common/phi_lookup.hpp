@@ -9,6 +9,15 @@
 
 namespace lockstep {
 
+/// phi, and what hides it from points of the fluid.
+template <int dim>
+struct PhiAmongSolids {
+  const MacDomain<dim>& domain;
+  const SolidCells<dim>& solids;
+  KeptSurface<dim>& kept;  ///< surface of `solids` near each rank's cells
+  const CellField& phi;    ///< signed distance from the liquid's surface, negative inside [m]
+};
+
 /// phi at any point of one tile after the other: multilinear, near surfaces of solids from the
 /// visible samples. Points are in cells from the lower corner of the tile.
 template <int dim>

@@ -225,9 +225,11 @@ std::vector<TakenLiquid> give_up_cells(const MacDomain<dim>& domain, const Solid
 
 template <int dim>
 double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                  const MovingSurface<dim>& surface, const NearbySurface<dim>& after, double dt,
-                  const std::vector<TakenLiquid>& taken, Fractions& fractions) {
+                  const InterfaceStep<dim>& step, const std::vector<TakenLiquid>& taken,
+                  Fractions& fractions) {
   const TiledGrid<dim>& grid = domain.grid;
+  const MovingSurface<dim>& surface = step.surface;
+  const auto after = step.kept.of(solids.state.surface, grid, 2);
   std::vector<Arrival<dim>> mine;
   double lost = 0;
   for (const TakenLiquid& part : taken) {
@@ -235,14 +237,14 @@ double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
     const auto nearest =
         surface.before ? surface.before->closest(x, farthest_taken * grid.spacing()) : std::nullopt;
     if (nearest)
-      mine.push_back({x + dt * surface.velocity(*nearest), part.liquid, part.defect});
+      mine.push_back({x + step.dt * surface.velocity(*nearest), part.liquid, part.defect});
     else
       lost += part.liquid + part.defect;
   }
   lost = sum_all(grid.comm(), lost);
   const std::vector<Arrival<dim>> all = gather_arrivals<dim>(grid.comm(), mine);
   std::vector<char> nobody_sees;
-  const std::vector<int> cells = cells_to_arrive_in<dim>(all, grid, solids, after, nobody_sees);
+  const std::vector<int> cells = cells_to_arrive_in<dim>(all, grid, solids, *after, nobody_sees);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (nobody_sees[i])
       lost += all[i].liquid + all[i].defect;
@@ -285,12 +287,10 @@ template std::vector<TakenLiquid> give_up_cells<2>(const MacDomain<2>&, const So
                                                    std::vector<char>&, Fractions&);
 template std::vector<TakenLiquid> give_up_cells<3>(const MacDomain<3>&, const SolidCells<3>&,
                                                    std::vector<char>&, Fractions&);
-template double take_along<2>(const MacDomain<2>&, const SolidCells<2>&, const MovingSurface<2>&,
-                              const NearbySurface<2>&, double, const std::vector<TakenLiquid>&,
-                              Fractions&);
-template double take_along<3>(const MacDomain<3>&, const SolidCells<3>&, const MovingSurface<3>&,
-                              const NearbySurface<3>&, double, const std::vector<TakenLiquid>&,
-                              Fractions&);
+template double take_along<2>(const MacDomain<2>&, const SolidCells<2>&, const InterfaceStep<2>&,
+                              const std::vector<TakenLiquid>&, Fractions&);
+template double take_along<3>(const MacDomain<3>&, const SolidCells<3>&, const InterfaceStep<3>&,
+                              const std::vector<TakenLiquid>&, Fractions&);
 template double share_among_liquid<2>(const MacDomain<2>&, const SolidCells<2>&, double,
                                       Fractions&);
 template double share_among_liquid<3>(const MacDomain<3>&, const SolidCells<3>&, double,

@@ -1,9 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "interfaces/fluid.hpp"
+#include "liquid/common/interface_model.hpp"
 #include "liquid/fractions/fraction_transport.hpp"
-#include "transport/nearby_surface.hpp"
 
 namespace lockstep {
 
@@ -34,8 +33,8 @@ std::vector<TakenLiquid> give_up_cells(const MacDomain<dim>& domain, const Solid
 /// Collective.
 template <int dim>
 double take_along(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                  const MovingSurface<dim>& surface, const NearbySurface<dim>& after, double dt,
-                  const std::vector<TakenLiquid>& taken, Fractions& fractions);
+                  const InterfaceStep<dim>& step, const std::vector<TakenLiquid>& taken,
+                  Fractions& fractions);
 
 /// Adds a volume [cells], the same on all ranks, to the defects of all cells that are more than
 /// half full, in proportion to their liquid. Returns it if there are none, else 0. Collective.

@@ -83,17 +83,18 @@ typename FractionTransport<dim>::Inflow FractionTransport<dim>::through(
 }
 
 template <int dim>
-void FractionTransport<dim>::sweep(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-                                   const FaceField<dim>& velocity, double dt, int axis,
-                                   CellField& liquid) {
+void FractionTransport<dim>::sweep(const SolidCells<dim>& solids, const FractionFlow<dim>& flow,
+                                   int axis, CellField& liquid) {
   const TiledGrid<dim>& grid = domain_.grid;
-  const double per_speed = dt / grid.spacing();
+  const std::vector<char>& tiles = flow.tiles;
+  const CellField& velocity = flow.velocity[axis];
+  const double per_speed = flow.dt / grid.spacing();
   planes_.find(solids, tiles, liquid);
   for_each_fluid_cell(domain_.grid, solids, tiles, [&](int cell) {
     double change = 0, growth = 0;
     for (int side = 0; side < 2; ++side) {
       const int face = face_of(grid, cell, axis, side);
-      const double passed = face < 0 ? 0 : (side == 0 ? 1 : -1) * velocity[axis][face] * per_speed;
+      const double passed = face < 0 ? 0 : (side == 0 ? 1 : -1) * velocity[face] * per_speed;
       if (passed == 0)
         continue;
       const Inflow inflow = through(solids, liquid, cell, axis, side, passed);
@@ -113,11 +114,10 @@ void FractionTransport<dim>::sweep(const SolidCells<dim>& solids, const std::vec
 
 template <int dim>
 void FractionTransport<dim>::leave_covered_cells(const SolidCells<dim>& solids,
-                                                 const std::vector<char>& tiles,
-                                                 const FaceField<dim>& velocity, double dt,
+                                                 const FractionFlow<dim>& flow,
                                                  Fractions& fractions) {
   const TiledGrid<dim>& grid = domain_.grid;
-  for_each_owned_cell_of(grid, tiles, [&](int cell) {
+  for_each_owned_cell_of(grid, flow.tiles, [&](int cell) {
     if (solids.is_fluid(cell) || !grid.in_domain(cell) || fractions.liquid[cell] == 0)
       return;
     const Index<dim> place = grid.coordinates(cell);
@@ -126,7 +126,7 @@ void FractionTransport<dim>::leave_covered_cells(const SolidCells<dim>& solids,
       if (face < 0 || domain_.boundary.periodic(axis) ||
           place[axis] != (side == 0 ? 0 : grid.n_cells()[axis] - 1))
         continue;
-      double inwards = (side == 0 ? 1 : -1) * velocity[axis][face] * dt / grid.spacing();
+      double inwards = (side == 0 ? 1 : -1) * flow.velocity[axis][face] * flow.dt / grid.spacing();
       if (domain_.boundary.side(axis, side).lets_in_air())
         inwards = std::min(inwards, 0.0);
       const double real = open_part(axis, face) * inwards * fractions.liquid[cell];
@@ -137,25 +137,22 @@ void FractionTransport<dim>::leave_covered_cells(const SolidCells<dim>& solids,
 }
 
 template <int dim>
-double FractionTransport<dim>::advance(const SolidCells<dim>& solids,
-                                       const std::vector<char>& tiles,
-                                       const std::vector<char>& is_solved,
-                                       const FaceField<dim>& velocity, double dt, int first_axis,
-                                       const std::function<double(int axis, int cell)>& open,
-                                       Fractions& fractions) {
-  open_ = open;
+double FractionTransport<dim>::advance(const SolidCells<dim>& solids, const FractionFlow<dim>& flow,
+                                       int first_axis, Fractions& fractions) {
+  open_ = flow.open;
   before_ = fractions.liquid;
   swept_.resize(before_.size());
   arrived_.assign(before_.size(), 0);
   grows_.assign(before_.size(), 0);
   left_ = 0;
   if (open_ && solids.state.surface)
-    leave_covered_cells(solids, tiles, velocity, dt, fractions);
-  for_each_fluid_cell(domain_.grid, solids, tiles,
-                      [&](int cell) { grows_[cell] = is_solved[cell] && before_[cell] > 0.5; });
+    leave_covered_cells(solids, flow, fractions);
+  for_each_fluid_cell(domain_.grid, solids, flow.tiles, [&](int cell) {
+    grows_[cell] = flow.is_solved[cell] && before_[cell] > 0.5;
+  });
   for (int i = 0; i < dim; ++i)
-    sweep(solids, tiles, velocity, dt, (first_axis + i) % dim, fractions.liquid);
-  for_each_fluid_cell(domain_.grid, solids, tiles, [&](int cell) {
+    sweep(solids, flow, (first_axis + i) % dim, fractions.liquid);
+  for_each_fluid_cell(domain_.grid, solids, flow.tiles, [&](int cell) {
     double& liquid = fractions.liquid[cell];
     if (liquid < negligible_fraction)
       liquid = 0;

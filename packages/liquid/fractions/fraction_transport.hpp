@@ -21,6 +21,17 @@ struct Fractions {
   }
 };
 
+/// The flow that carries fractions over one step.
+template <int dim>
+struct FractionFlow {
+  const std::vector<char>& tiles;      ///< flags of the owned tiles on which fractions change
+  const std::vector<char>& is_solved;  ///< cells in which the velocity has no divergence
+  const FaceField<dim>& velocity;      ///< velocity of the faces [m/s]
+  double dt = 0;                       ///< [s]
+  /// Open part of faces at sides of the domain, as in InterfaceStep.
+  const std::function<double(int axis, int cell)>& open;
+};
+
 /// Advects fractions axis by axis with the liquid in the slabs that pass the faces (Weymouth & Yue
 /// 2010): volume is conserved, and where the velocity has no divergence no fraction leaves [0, 1].
 /// Nothing passes a surface of solids; beside a moving one liquid moves with it.
@@ -34,13 +45,10 @@ class FractionTransport {
   double courant_number(const SolidCells<dim>& solids, const std::vector<char>& tiles,
                         const CellField& phi, double cut_off, const FaceField<dim>& velocity,
                         double dt) const;
-  /// Advances one step with a Courant number of at most 1/2 on the flagged owned tiles,
-  /// `first_axis` first. `is_solved`: cells in which the velocity has no divergence. Sets the halo
-  /// of width 1 of the fractions, which must be set. `open`: as in InterfaceStep. Returns the
-  /// outflow from the domain less the inflow [cells], on this rank. Collective.
-  double advance(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-                 const std::vector<char>& is_solved, const FaceField<dim>& velocity, double dt,
-                 int first_axis, const std::function<double(int axis, int cell)>& open,
+  /// Advances one step with a Courant number of at most 1/2, `first_axis` first. Sets the halo of
+  /// width 1 of the fractions, which must be set. Returns the outflow from the domain less the
+  /// inflow [cells], on this rank. Collective.
+  double advance(const SolidCells<dim>& solids, const FractionFlow<dim>& flow, int first_axis,
                  Fractions& fractions);
 
  private:
@@ -52,12 +60,12 @@ class FractionTransport {
   Inflow through(const SolidCells<dim>& solids, const CellField& liquid, int cell, int axis,
                  int side, double passed) const;
   double in_slab(const CellField& liquid, int cell, int axis, int side, double width) const;
-  void sweep(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-             const FaceField<dim>& velocity, double dt, int axis, CellField& liquid);
+  void sweep(const SolidCells<dim>& solids, const FractionFlow<dim>& flow, int axis,
+             CellField& liquid);
   /// Counts the outflow of cells whose centres a solid holds, where it leaves their faces open in
   /// part, as a defect of these cells.
-  void leave_covered_cells(const SolidCells<dim>& solids, const std::vector<char>& tiles,
-                           const FaceField<dim>& velocity, double dt, Fractions& fractions);
+  void leave_covered_cells(const SolidCells<dim>& solids, const FractionFlow<dim>& flow,
+                           Fractions& fractions);
   double open_part(int axis, int face) const { return open_ ? open_(axis, face) : 1; }
 
   const MacDomain<dim>& domain_;

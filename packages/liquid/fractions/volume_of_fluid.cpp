@@ -143,10 +143,10 @@ std::vector<char> VolumeOfFluid<dim>::advect(const InterfaceStep<dim>& step) {
   std::vector<char> is_solved(phi_.size());
   for (std::size_t cell = 0; cell < phi_.size(); ++cell)
     is_solved[cell] = phi_[cell] < 0;
+  const FractionFlow<dim> flow{tiles, is_solved, velocity, step.dt / n, step.open};
   double left = 0;
   for (int i = 0; i < n; ++i)
-    left += transport_.advance(solids_, tiles, is_solved, velocity, step.dt / n,
-                               static_cast<int>(n_sweeps_++ % dim), step.open, fractions_);
+    left += transport_.advance(solids_, flow, static_cast<int>(n_sweeps_++ % dim), fractions_);
   target_ -= sum_all(domain_.grid.comm(), left);
   return tiles;
 }
@@ -198,8 +198,7 @@ bool VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
   });
   const bool takes_along = sum_all(domain_.grid.comm(), static_cast<GlobalIndex>(taken.size())) > 0;
   if (takes_along) {
-    const auto after = step.kept.of(solids_.state.surface, domain_.grid, 2);
-    double gone = take_along(domain_, solids_, step.surface, *after, step.dt, taken, fractions_);
+    double gone = take_along(domain_, solids_, step, taken, fractions_);
     if (!solids_.has_shells())
       gone = share_among_liquid(domain_, solids_, gone, fractions_);
     target_ -= gone;

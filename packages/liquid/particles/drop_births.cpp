@@ -30,13 +30,14 @@ std::vector<Drop<dim>> in_order_of_places(const std::vector<Drop<dim>>& drops,
 }  // namespace
 
 template <int dim>
-std::vector<Drop<dim>> take_lone_particles(const MacDomain<dim>& domain,
-                                           const SolidCells<dim>& solids, KeptSurface<dim>& kept,
-                                           const CellField& phi, const TransportFrame<dim>& frame,
+std::vector<Drop<dim>> take_lone_particles(const PhiAmongSolids<dim>& known,
+                                           const TransportFrame<dim>& frame,
                                            ParticleTiles<dim>& tiles, std::vector<int>& cells) {
-  const TiledGrid<dim>& grid = domain.grid;
+  const TiledGrid<dim>& grid = known.domain.grid;
+  const SolidCells<dim>& solids = known.solids;
+  const CellField& phi = known.phi;
   const SampleLattice<dim> lattice(grid);
-  PhiLookup<dim> lookup(grid, lattice, solids, kept, phi);
+  PhiLookup<dim> lookup(grid, lattice, solids, known.kept, phi);
   std::vector<Drop<dim>> drops;
   cells.clear();
   const auto is_lone = [&](const Particle<dim>& particle) {
@@ -83,12 +84,10 @@ std::vector<Drop<dim>> take_lone_particles(const MacDomain<dim>& domain,
   return in_order_of_places(drops, cells);
 }
 
-template std::vector<Drop<2>> take_lone_particles<2>(const MacDomain<2>&, const SolidCells<2>&,
-                                                     KeptSurface<2>&, const CellField&,
+template std::vector<Drop<2>> take_lone_particles<2>(const PhiAmongSolids<2>&,
                                                      const TransportFrame<2>&, ParticleTiles<2>&,
                                                      std::vector<int>&);
-template std::vector<Drop<3>> take_lone_particles<3>(const MacDomain<3>&, const SolidCells<3>&,
-                                                     KeptSurface<3>&, const CellField&,
+template std::vector<Drop<3>> take_lone_particles<3>(const PhiAmongSolids<3>&,
                                                      const TransportFrame<3>&, ParticleTiles<3>&,
                                                      std::vector<int>&);
 

@@ -8,11 +8,10 @@ namespace lockstep {
 
 /// Takes out the particles of the liquid that no wet cell shows: of the centres around that see
 /// them none is wet. Returns them as drops of no volume with the velocity of the frame, and their
-/// cells. `phi` on the halo of width 1. Local.
+/// cells. phi is set on the halo of width 1. Local.
 template <int dim>
-std::vector<Drop<dim>> take_lone_particles(const MacDomain<dim>& domain,
-                                           const SolidCells<dim>& solids, KeptSurface<dim>& kept,
-                                           const CellField& phi, const TransportFrame<dim>& frame,
+std::vector<Drop<dim>> take_lone_particles(const PhiAmongSolids<dim>& known,
+                                           const TransportFrame<dim>& frame,
                                            ParticleTiles<dim>& tiles, std::vector<int>& cells);
 
 }  // namespace lockstep

@@ -159,7 +159,7 @@ void LevelSet<dim>::restore(const InterfaceStep<dim>& step, const std::vector<ch
   if (!parameters_.particles)
     return;
   remove_trapped_air(domain_, solids_, step.kept, phi_, particles_);
-  set_radii(domain_, solids_, step.kept, phi_, particles_);
+  set_radii<dim>({domain_, solids_, step.kept, phi_}, particles_);
   seed(step.kept, n_restored_ % parameters_.particles->interval == 0);
 }
 
@@ -188,8 +188,9 @@ void LevelSet<dim>::seed(KeptSurface<dim>& kept, bool all) {
   if (!parameters_.particles)
     return;
   domain_.full_halo.fill(phi_);
-  seed_particles(domain_, solids_, kept, phi_, *parameters_.particles,
-                 all ? Seeding::all_cells : Seeding::new_cells, n_restored_, in_band_, particles_);
+  seed_particles<dim>({domain_, solids_, kept, phi_}, *parameters_.particles,
+                      all ? Seeding::all_cells : Seeding::new_cells, n_restored_, in_band_,
+                      particles_);
 }
 
 template <int dim>
@@ -235,7 +236,7 @@ void LevelSet<dim>::release_drops(const InterfaceStep<dim>& step,
                                   const TransportFrame<dim>& frame) {
   std::vector<int> cells;
   std::vector<Drop<dim>> born =
-      take_lone_particles(domain_, solids_, step.kept, phi_, frame, particles_, cells);
+      take_lone_particles<dim>({domain_, solids_, step.kept, phi_}, frame, particles_, cells);
   const double volume = domain_.cell_volume() / parameters_.particles->per_cell;
   const std::vector<double> parts = volume_.take_drops(solids_, phi_, cells, volume);
   for (std::size_t i = 0; i < born.size(); ++i) {

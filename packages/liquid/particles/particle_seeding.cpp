@@ -37,19 +37,18 @@ class Dice {
 template <int dim>
 class Seeder {
  public:
-  Seeder(const MacDomain<dim>& domain, const SolidCells<dim>& solids, KeptSurface<dim>& kept,
-         const CellField& phi, const ParticleParameters& parameters, Seeding seeding,
+  Seeder(const PhiAmongSolids<dim>& known, const ParticleParameters& parameters, Seeding seeding,
          long long step, std::vector<char>& in_band)
-      : domain_(domain),
-        solids_(solids),
-        phi_(phi),
+      : domain_(known.domain),
+        solids_(known.solids),
+        phi_(known.phi),
         parameters_(parameters),
         all_(seeding == Seeding::all_cells),
         step_(step),
         in_band_(in_band),
-        lattice_(domain.grid),
-        lookup_(domain.grid, lattice_, solids, kept, phi, parameters.band + 2),
-        post_(domain.grid) {}
+        lattice_(domain_.grid),
+        lookup_(domain_.grid, lattice_, solids_, known.kept, phi_, parameters.band + 2),
+        post_(domain_.grid) {}
 
   void seed(int tile, std::vector<Particle<dim>>& particles) {
     const int first = tile * tile_volume<dim>;
@@ -184,15 +183,15 @@ class Seeder {
 }  // namespace
 
 template <int dim>
-void set_radii(const MacDomain<dim>& domain, const SolidCells<dim>& solids, KeptSurface<dim>& kept,
-               const CellField& phi, ParticleTiles<dim>& tiles) {
-  const double h = domain.spacing();
-  const SampleLattice<dim> lattice(domain.grid);
-  PhiLookup<dim> lookup(domain.grid, lattice, solids, kept, phi);
+void set_radii(const PhiAmongSolids<dim>& known, ParticleTiles<dim>& tiles) {
+  const TiledGrid<dim>& grid = known.domain.grid;
+  const double h = grid.spacing();
+  const SampleLattice<dim> lattice(grid);
+  PhiLookup<dim> lookup(grid, lattice, known.solids, known.kept, known.phi);
   for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
     std::vector<Particle<dim>>& particles = tiles[tile];
     const auto may_be_small = [&](const Particle<dim>& particle) {
-      const double at_center = phi[tile * tile_volume<dim> + particle.cell_in_tile()];
+      const double at_center = known.phi[tile * tile_volume<dim> + particle.cell_in_tile()];
       return particle.side() * at_center <= (farthest_in_cell + most_radius) * h;
     };
     for (Particle<dim>& particle : particles)
@@ -217,25 +216,20 @@ void set_radii(const MacDomain<dim>& domain, const SolidCells<dim>& solids, Kept
 }
 
 template <int dim>
-void seed_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                    KeptSurface<dim>& kept, const CellField& phi,
-                    const ParticleParameters& parameters, Seeding seeding, long long step,
-                    std::vector<char>& in_band, ParticleTiles<dim>& tiles) {
-  Seeder<dim> seeder(domain, solids, kept, phi, parameters, seeding, step, in_band);
+void seed_particles(const PhiAmongSolids<dim>& known, const ParticleParameters& parameters,
+                    Seeding seeding, long long step, std::vector<char>& in_band,
+                    ParticleTiles<dim>& tiles) {
+  Seeder<dim> seeder(known, parameters, seeding, step, in_band);
   for (std::size_t tile = 0; tile < tiles.size(); ++tile)
     seeder.seed(static_cast<int>(tile), tiles[tile]);
   seeder.deliver(tiles);
 }
 
-template void set_radii<2>(const MacDomain<2>&, const SolidCells<2>&, KeptSurface<2>&,
-                           const CellField&, ParticleTiles<2>&);
-template void set_radii<3>(const MacDomain<3>&, const SolidCells<3>&, KeptSurface<3>&,
-                           const CellField&, ParticleTiles<3>&);
-template void seed_particles<2>(const MacDomain<2>&, const SolidCells<2>&, KeptSurface<2>&,
-                                const CellField&, const ParticleParameters&, Seeding, long long,
-                                std::vector<char>&, ParticleTiles<2>&);
-template void seed_particles<3>(const MacDomain<3>&, const SolidCells<3>&, KeptSurface<3>&,
-                                const CellField&, const ParticleParameters&, Seeding, long long,
-                                std::vector<char>&, ParticleTiles<3>&);
+template void set_radii<2>(const PhiAmongSolids<2>&, ParticleTiles<2>&);
+template void set_radii<3>(const PhiAmongSolids<3>&, ParticleTiles<3>&);
+template void seed_particles<2>(const PhiAmongSolids<2>&, const ParticleParameters&, Seeding,
+                                long long, std::vector<char>&, ParticleTiles<2>&);
+template void seed_particles<3>(const PhiAmongSolids<3>&, const ParticleParameters&, Seeding,
+                                long long, std::vector<char>&, ParticleTiles<3>&);
 
 }  // namespace lockstep

@@ -7,8 +7,7 @@ namespace lockstep {
 /// Gives each particle its distance from the surface as radius, within limits, unless it is farther
 /// on the other side than its radius. Local.
 template <int dim>
-void set_radii(const MacDomain<dim>& domain, const SolidCells<dim>& solids, KeptSurface<dim>& kept,
-               const CellField& phi, ParticleTiles<dim>& tiles);
+void set_radii(const PhiAmongSolids<dim>& known, ParticleTiles<dim>& tiles);
 
 /// Cells that get particles.
 enum class Seeding {
@@ -18,12 +17,11 @@ enum class Seeding {
 
 /// Adds particles where there are too few: each at a random place of a cell, moved along the
 /// gradient of phi to a random distance on the cell's side. `step` makes the numbers random.
-/// `in_band`: of owned cells, in the band the last time; set anew. `phi` on all stored cells.
+/// `in_band`: of owned cells, in the band the last time; set anew. phi is set on all stored cells.
 /// Collective.
 template <int dim>
-void seed_particles(const MacDomain<dim>& domain, const SolidCells<dim>& solids,
-                    KeptSurface<dim>& kept, const CellField& phi,
-                    const ParticleParameters& parameters, Seeding seeding, long long step,
-                    std::vector<char>& in_band, ParticleTiles<dim>& tiles);
+void seed_particles(const PhiAmongSolids<dim>& known, const ParticleParameters& parameters,
+                    Seeding seeding, long long step, std::vector<char>& in_band,
+                    ParticleTiles<dim>& tiles);
 
 }  // namespace lockstep

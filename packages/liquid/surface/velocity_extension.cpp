@@ -13,13 +13,13 @@ constexpr double same_distance = 1e-9;
 }  // namespace
 
 template <int dim>
-VelocityExtension<dim>::VelocityExtension(const MacDomain<dim>& domain, const CellField& distance,
-                                          double known, double band, const std::vector<char>& near,
+VelocityExtension<dim>::VelocityExtension(const MacDomain<dim>& domain, const ExtensionRange& range,
+                                          const std::vector<char>& near,
                                           const NearbySurface<dim>& surface, GridState<dim>& state)
-    : domain_(domain), distance_(distance), near_(near), surface_(surface) {
-  if (band > known)
-    go_on(known, band, state);
-  find_faces(band, state);
+    : domain_(domain), distance_(range.distance), near_(near), surface_(surface) {
+  if (range.band > range.known)
+    go_on(range.known, range.band, state);
+  find_faces(range.band, state);
   for (int axis = 0; axis < dim; ++axis) {
     sort_faces(axis, state);
     find_sources(axis, state);

@@ -7,6 +7,13 @@
 
 namespace lockstep {
 
+/// Band over which velocities are extended, and the distance that orders the faces within it.
+struct ExtensionRange {
+  const CellField& distance;  ///< distance of cells' centres from the liquid, negative inside [m]
+  double known = 0;           ///< value at which `distance` is cut off [m]
+  double band = 0;            ///< distance up to which velocities are extended [m]
+};
+
 /// Extends velocities into the air above a free surface, over the faces of a narrow band, so that
 /// the surface and the fluid behind it can move up there. A face takes the mean of its neighbours
 /// along the axes that are nearer to the fluid than itself and that it sees, weighted with how much
@@ -20,11 +27,11 @@ template <int dim>
 class VelocityExtension {
  public:
   /// Finds the faces and marks them `extended` in `state`: those without fluid on either side and
-  /// with an air cell that has a distance below `band` [m] on one. Where `distance` is cut off at
-  /// `known` [m] it goes on from cell to cell, by no more than it may grow. `near` as in
-  /// MacGeometry, the surface at the same instant. References must outlive this object. Collective.
-  VelocityExtension(const MacDomain<dim>& domain, const CellField& distance, double known,
-                    double band, const std::vector<char>& near, const NearbySurface<dim>& surface,
+  /// with an air cell that has a distance below the band on one. Where the distance is cut off it
+  /// goes on from cell to cell, by no more than it may grow. `near` as in MacGeometry, the surface
+  /// at the same instant. The domain, `near` and the surface must outlive this object. Collective.
+  VelocityExtension(const MacDomain<dim>& domain, const ExtensionRange& range,
+                    const std::vector<char>& near, const NearbySurface<dim>& surface,
                     GridState<dim>& state);
 
   /// Sets the velocity of those faces, ghosts included. `on_surface`: of a surface point; `time`:

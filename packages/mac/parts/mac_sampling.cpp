@@ -19,6 +19,19 @@ double mean_of(const SampleLattice<dim>& lattice, SampleKind kind, const Point<d
   return weight > 0 ? sum / weight : 0;
 }
 
+/// From a cell of air to a neighbour across `axis` that is liquid, zero if there is none [cells].
+template <int dim>
+Point<dim> way_to_liquid(const TiledGrid<dim>& grid, const std::vector<CellState>& cells, int axis,
+                         int cell) {
+  for (int a = 0; a < dim; ++a)
+    for (int end = 0; end < 2 && a != axis; ++end) {
+      const int neighbor = grid.neighbor(cell, a, end);
+      if (neighbor >= 0 && cells[neighbor] == CellState::fluid)
+        return Point<dim>::Unit(a) * (end == 0 ? -1 : 1);
+    }
+  return Point<dim>::Zero();
+}
+
 }  // namespace
 
 template <int dim>
@@ -56,21 +69,29 @@ std::vector<FlowSample> MacOutput<dim>::flow_across(int axis,
   const SampleLattice<dim> lattice(grid);
   const auto& cells = flow_.geometry.state.cells;
   const auto is_fluid = [&cells](int cell) { return cells[cell] == CellState::fluid; };
-  const auto in_domain = [&](int face) {
+  const auto is_air = [&cells](int cell) { return cell < 0 || cells[cell] == CellState::air; };
+  // Faces within air that has no mass tell nothing of the liquid's velocity.
+  const auto tells = [&](int face) {
     if (face < 0)
       return false;
     const FaceCells beside = cells_of_face(grid, cells, axis, face);
-    return beside.lower >= 0 || beside.upper >= 0;
+    return (beside.lower >= 0 || beside.upper >= 0) &&
+           !(is_air(beside.lower) && is_air(beside.upper));
   };
   std::vector<FlowSample> samples(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const auto [cell, x] = place_of<dim>(grid, points[p]);
-    if (cell < 0 || !grid.owned(cell) || !is_fluid(cell))
+    const auto [cell, place] = place_of<dim>(grid, points[p]);
+    if (cell < 0 || !grid.owned(cell))
+      continue;
+    Point<dim> x = place;
+    if (cells[cell] == CellState::air)
+      x += way_to_liquid(grid, cells, axis, cell);
+    else if (!is_fluid(cell))
       continue;
     double weight = 0, open = 0, rate = 0;
     for (const StencilCorner<dim>& corner : lattice.corners(axis, x)) {
       const bool at_wall = corner.id == Stencil<dim>::wall_sample;
-      if (corner.weight == 0 || (!at_wall && !in_domain(corner.id)))
+      if (corner.weight == 0 || (!at_wall && !tells(corner.id)))
         continue;
       weight += corner.weight;
       const double part = at_wall ? 1 : flow_.geometry.flux_fraction(axis, corner.id);

@@ -1,5 +1,6 @@
 #include "mac/parts/prescribed_sides.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
@@ -44,6 +45,17 @@ std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<dim>& domain,
   return fluxes;
 }
 
+namespace {
+/// Change of the velocity inwards by which a side takes the head rho u^2/2 that fluid which comes
+/// in at u > 0 [m/s] has gained on its way from rest; none where it goes out. It never turns the
+/// flow: in steps in which fluid comes in by more than a cell it is less.
+double loss_of_inflow(const FaceProperties& face, double inwards, double spacing, double dt) {
+  if (inwards <= 0)
+    return 0;
+  return -0.5 * face.distance_factor * inwards * std::min(dt * inwards / spacing, 1.0);
+}
+}  // namespace
+
 template <int dim>
 Momentum<dim> push_of_pressures(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                 double time, double dt, FaceField<dim>& velocity) {
@@ -59,10 +71,15 @@ Momentum<dim> push_of_pressures(const MacDomain<dim>& domain, const MacGeometry<
       const FaceCells beside = cells_of_face(domain.grid, geometry.state.cells, axis, cell);
       if (!beside.at_side())
         return;
-      const int end = beside.lower < 0 ? 0 : 1;
-      const double pressure = sides[end].pressure(0, domain.grid.face_center(axis, cell), time);
+      const BoundarySide<dim>& side = sides[beside.lower < 0 ? 0 : 1];
+      if (side.pressure.vanishes())
+        return;
+      const FaceProperties& face = geometry.face_table(axis, cell);
+      const double inward = beside.lower < 0 ? 1 : -1;
+      const double pressure = side.pressure(0, domain.grid.face_center(axis, cell), time);
       const double change =
-          (end == 0 ? dt : -dt) * geometry.face_table(axis, cell).gradient * pressure;
+          inward * (dt * face.gradient * pressure +
+                    loss_of_inflow(face, inward * velocity[axis][cell], domain.spacing(), dt));
       velocity[axis][cell] += change;
       moments.add(cell, geometry.mass(axis, cell) * change);
     });

@@ -13,9 +13,10 @@ namespace lockstep {
 template <int dim>
 std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<dim>& domain,
                                             const MacGeometry<dim>& geometry, double time);
-/// Pushes the owned free faces of open sides by the sides' pressures at `time` over `dt` [s], as if
-/// they were those of cells beyond; the pressure that is solved for is 0 there. Returns the impulse
-/// on this rank's fluid. Local.
+/// Pushes the owned free faces of open sides with a pressure by it at `time` over `dt` [s], as if
+/// it were that of cells beyond; the pressure that is solved for is 0 there. What comes in has
+/// gained its speed from rest on the way: there the pressure is less by rho u^2/2. `velocity`: that
+/// before forces. Returns the impulse on this rank's fluid. Local.
 template <int dim>
 Momentum<dim> push_of_pressures(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                 double time, double dt, FaceField<dim>& velocity);

@@ -101,7 +101,8 @@ ParameterList domain_parameters() {
       declare(side, "Pressure", 0.0,
               "Pressure at an open side [Pa], or a formula of place [m] and time [s], such as that "
               "of still water 2 m high, \"[1000*9.81*max(2 - y, 0)]\". Where it is not left at 0 "
-              "what comes in is like what is there: liquid beside liquid.");
+              "what comes in is like what is there, liquid beside liquid, and comes as from a "
+              "lake: the side holds less by rho u^2/2 there.");
       for (const char* name : {"Velocity", "Pressure"})
         set_variables(side, name, place_and_time(dim));
       declare_between(side, "Contact Angle", right_angle, least_contact_angle,

@@ -96,12 +96,13 @@ struct Cells {
   Index<dim> begin{}, end{};
 };
 
-/// Marks cells that, grown by h/2, touch both the bounds and the plane of a simplex. `marked`: a
-/// box of cells that are already, in a fine mesh often those of the next simplex too.
+/// Marks cells that, grown by h/2, touch both the bounds and the plane of a simplex. `stored`: a
+/// box of cells that holds all of this rank; `marked`: one of cells that are marked already, in a
+/// fine mesh often those of the next simplex too.
 template <int dim>
 void mark_near(const TiledGrid<dim>& grid, const SurfaceSnapshot<dim>& surface, int simplex,
-               const Index<dim>& begin, const Index<dim>& end, Cells<dim>& marked,
-               std::vector<char>& near) {
+               const Cells<dim>& stored, Cells<dim>& marked, std::vector<char>& near) {
+  const auto& [begin, end] = stored;
   const double h = grid.spacing();
   const Box<dim> bounds = surface.bounds(simplex);
   Index<dim> first{}, last{};
@@ -165,7 +166,7 @@ SurfaceMarks<dim> mark_surface(const MacDomain<dim>& domain, const SurfaceSnapsh
       mark_occluded(domain, axis, line, marks.occluded);
   Cells<dim> marked;
   for (int s = 0; s < surface.n_simplices(); ++s)
-    mark_near<dim>(grid, surface, s, begin, end, marked, marks.near);
+    mark_near<dim>(grid, surface, s, {begin, end}, marked, marks.near);
   return marks;
 }
 

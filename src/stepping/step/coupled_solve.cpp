@@ -100,7 +100,7 @@ bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
   solution.is_converged = is_settled(solids, context.dt, velocity);
   if (solution.is_converged || n_solves == options_.newton_iterations + most_searches)
     return false;
-  settle_motion<dim>(solids, nullptr, context, {}, velocity, velocity, momentum);
+  settle_motion<dim>(solids, nullptr, context, {velocity, velocity}, momentum);
   return true;
 }
 
@@ -118,8 +118,8 @@ ContactReport<dim> CoupledSolve<dim>::contact_before_solve(const StepContext<dim
     const auto inverse = implicit_response<dim>(solids, dt);
     const RCP<const Vector> predicted =
         solids.velocity_of(momentum, dt, context.constraints, *inverse);
-    const SettledMotion<dim> settled = settle_motion<dim>(solids, &contact, context, {}, *predicted,
-                                                          *predicted, momentum, inverse);
+    const SettledMotion<dim> settled = settle_motion<dim>(
+        solids, &contact, context, {*predicted, *predicted, {}, inverse}, momentum);
     if (!settled.contact.impulse.is_null())
       momentum.update(1, *settled.contact.impulse, 1);
     return settled.contact;

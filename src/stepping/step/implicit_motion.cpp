@@ -130,20 +130,18 @@ ContactResponse joint_response(const SolidSystem<dim>& solids, double dt) {
 
 template <int dim>
 SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
-                                 const StepContext<dim>& context,
-                                 const std::function<void(Vector&)>& adjust,
-                                 const Vector& predicted, const Vector& first, Vector& momentum,
-                                 const RCP<const LinearOperator>& known_response) {
+                                 const StepContext<dim>& context, const MotionSearch& search,
+                                 Vector& momentum) {
   const double dt = context.dt;
   const ContactPhase phase =
       context.moves_positions ? ContactPhase::position : ContactPhase::velocity;
   SettledMotion<dim> settled;
-  Response<dim> response(solids, dt, known_response);
+  Response<dim> response(solids, dt, search.known_response);
   RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
   RCP<Vector> at = linearisation_of(solids);
-  RCP<Vector> goal = rcp(new Vector(first, Teuchos::Copy));
+  RCP<Vector> goal = rcp(new Vector(search.first, Teuchos::Copy));
   Vector impulse(solids.map());
-  apply(*block, predicted, impulse);
+  apply(*block, search.predicted, impulse);
   for (int k = 1;; ++k) {
     if (contact) {
       settled.contact = contact->resolve(solids, phase, context.step.dt, *goal,
@@ -171,8 +169,8 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
     block = solids.full_block(Teuchos::null, dt);
     response.forget();
     goal = solids.velocity_of(impulse, dt, context.constraints, *response.inverse());
-    if (adjust)
-      adjust(*goal);
+    if (search.adjust)
+      search.adjust(*goal);
   }
 }
 
@@ -230,16 +228,12 @@ bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocit
 }
 
 template SettledMotion<2> settle_motion<2>(SolidSystem<2>&, ContactModel<2>*, const StepContext<2>&,
-                                           const std::function<void(Vector&)>&, const Vector&,
-                                           const Vector&, Vector&,
-                                           const RCP<const LinearOperator>&);
+                                           const MotionSearch&, Vector&);
 template RCP<const LinearOperator> implicit_response(const SolidSystem<2>&, double);
 template ContactResponse joint_response(const SolidSystem<2>&, double);
 template ContactResponse joint_response(const SolidSystem<3>&, double);
 template SettledMotion<3> settle_motion<3>(SolidSystem<3>&, ContactModel<3>*, const StepContext<3>&,
-                                           const std::function<void(Vector&)>&, const Vector&,
-                                           const Vector&, Vector&,
-                                           const RCP<const LinearOperator>&);
+                                           const MotionSearch&, Vector&);
 template RCP<const LinearOperator> implicit_response(const SolidSystem<3>&, double);
 template void bound_sweep<2>(const SolidSystem<2>&, double, const Vector&, Vector&);
 template void bound_sweep<3>(const SolidSystem<3>&, double, const Vector&, Vector&);

@@ -24,6 +24,16 @@ RCP<const LinearOperator> implicit_response(const SolidSystem<dim>& solids, doub
 template <int dim>
 ContactResponse joint_response(const SolidSystem<dim>& solids, double dt);
 
+/// Where the search for the motion of solids begins, and what it must fulfil.
+struct MotionSearch {
+  const Vector& predicted;  ///< velocity of the linearised forces; defines Q
+  const Vector& first;      ///< first guess: `predicted`, or what else has been asked of it
+  /// What velocities must fulfil besides, if anything, done to those of every linearisation.
+  std::function<void(Vector&)> adjust = {};
+  /// The `implicit_response` of now, for who has it; null: made when it is needed.
+  RCP<const LinearOperator> known_response = {};
+};
+
 /// Finds the motion of the solids alone in a solve over dt: with the impulses of the fluid as they
 /// are, the velocity that minimises
 ///
@@ -33,18 +43,12 @@ ContactResponse joint_response(const SolidSystem<dim>& solids, double dt);
 /// is not (large turns or strains in one step, of stiff solids above all), Newton's method with
 /// steps that must lower Phi finds the minimum, so that no step gives the solids energy.
 ///
-/// `predicted`: of the linearised forces; defines Q. `first`: the same, or what else has been asked
-/// of it, where the search begins. `contact` may be null; it holds over the whole step. `adjust`:
-/// what velocities must fulfil besides, if anything, done to those of every linearisation.
-/// `momentum`, the explicit one of the solve, changes by that of forces linearised anew.
-/// `known_response`: the `implicit_response` of now, for who has it.
-/// Collective.
+/// `contact` may be null; it holds over the whole step. `momentum`, the explicit one of the solve,
+/// changes by that of forces linearised anew. Collective.
 template <int dim>
 SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* contact,
-                                 const StepContext<dim>& context,
-                                 const std::function<void(Vector&)>& adjust,
-                                 const Vector& predicted, const Vector& first, Vector& momentum,
-                                 const RCP<const LinearOperator>& known_response = {});
+                                 const StepContext<dim>& context, const MotionSearch& search,
+                                 Vector& momentum);
 
 /// Reduces the changes of velocities by `sweep_volumes` to where they cost each solid little
 /// energy, since they would strain stiff ones; undoes them where `settle_motion` has to act.

@@ -118,8 +118,8 @@ void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& fo
     found.solved = rcp(new Vector(*found.velocity, Teuchos::Copy));
   if (is_implicit) {
     const SettledMotion<dim> settled =
-        settle_motion<dim>(solids, components_.contact.get(), context, sweep_shells, as_solved,
-                           *found.velocity, *found.solution.momentum);
+        settle_motion<dim>(solids, components_.contact.get(), context,
+                           {as_solved, *found.velocity, sweep_shells}, *found.solution.momentum);
     found.velocity = settled.velocity;
     found.path.is_converged = settled.is_settled;
     add_last(settled.contact, found.path.contact);

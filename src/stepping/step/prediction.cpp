@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "interfaces/liquid.hpp"
 
 namespace lockstep {
 
@@ -114,8 +115,9 @@ Friction<dim> Prediction<dim>::solve(const StepContext<dim>& context, const Expe
   Friction<dim> friction;
   friction.pressure_work = expected.work;
   friction.viscous = solve_viscous<dim>(
-      *viscous, *sides_.viscous_fluid, *components_.solids, *sides_.viscous_coupling, block,
-      near_null_space, row, dt, context.constraints, options_.viscous, !context.moves_positions);
+      {*viscous, *sides_.viscous_fluid, *components_.solids, *sides_.viscous_coupling, block,
+       near_null_space},
+      {row, dt, context.constraints, options_.viscous, !context.moves_positions});
   system_.hold(Teuchos::null);
   const double full_mass = viscous->mass->normInf();
   if (full_mass > 0)

@@ -109,8 +109,8 @@ void TrappedGas<dim>::solve(const StepContext<dim>& context, const BlockSystem& 
       rates[k] += before[k] - answer[k];
     return rates;
   };
-  solution.gas_pressure = solve_with_gas(gas, *components_.strategy, blocks, request, solution.rhs,
-                                         solution.unknowns, solution.report);
+  solution.gas_pressure = solve_with_gas(gas, {*components_.strategy, blocks, request},
+                                         solution.rhs, solution.unknowns, solution.report);
   if (!context.moves_positions)
     check_volumes(context, gas, solution);
   solution.gas_momentum = make_vector(solids.map());
@@ -177,8 +177,8 @@ void TrappedGas<dim>::solve_advection(double dt, const BlockSystem& blocks,
       rates[k] = before[k] + solids[k] - rates[k];
     return rates;
   };
-  solution.gas_pressure = solve_with_gas(gas, *components_.strategy, blocks, request, solution.rhs,
-                                         solution.unknowns, solution.report);
+  solution.gas_pressure = solve_with_gas(gas, {*components_.strategy, blocks, request},
+                                         solution.rhs, solution.unknowns, solution.report);
 }
 
 template class TrappedGas<2>;

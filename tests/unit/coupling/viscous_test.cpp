@@ -50,8 +50,8 @@ ViscousResult<2> solve_viscosity(CoupledCase<2>& c,
     block = c.system.blocks(viscous_dt).solid_block();
     row = c.system.lumped_momentum(*c.solids.explicit_momentum(0, viscous_dt));
   }
-  return solve_viscous<2>(*system, c.fluid, c.solids, c.coupling, block, {}, row, viscous_dt,
-                          c.solids.reduction(), options);
+  return solve_viscous<2>({*system, c.fluid, c.solids, c.coupling, block, {}},
+                          {row, viscous_dt, c.solids.reduction(), options});
 }
 
 /// u* = 0 but at the free face of this axis at x.

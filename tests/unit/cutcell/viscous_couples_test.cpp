@@ -59,10 +59,11 @@ struct ViscousCase {
     fluid->set_coupled_velocity(coupling.velocity(*solids->velocity()));
     ViscousOptions options;
     options.tolerance = 1e-14;
-    return solve_viscous<dim>(*fluid->viscosity()->viscous_system(), *fluid->viscosity(), *solids,
-                              coupling, system->blocks(dt).solid_block(), {},
-                              system->lumped_momentum(*solids->explicit_momentum(0, dt)), dt,
-                              solids->reduction(), options);
+    const auto viscous = fluid->viscosity()->viscous_system();
+    return solve_viscous<dim>(
+        {*viscous, *fluid->viscosity(), *solids, coupling, system->blocks(dt).solid_block(), {}},
+        {system->lumped_momentum(*solids->explicit_momentum(0, dt)), dt, solids->reduction(),
+         options});
   }
   std::unique_ptr<MacFluid<dim>> fluid;
   std::unique_ptr<SolidSystem<dim>> solids;

@@ -33,7 +33,7 @@ Extended<dim> extended(const MacFluid<dim>& fluid, const CellField& distance, do
   domain.halo.fill(result.velocity);
   KeptSurface<dim> kept;
   const auto nearby = kept.of(result.state.surface, domain.grid, 2);
-  const VelocityExtension<dim> extension(domain, distance, known, band, fluid.geometry().near,
+  const VelocityExtension<dim> extension(domain, {distance, known, band}, fluid.geometry().near,
                                          *nearby, result.state);
   extension.extend(
       0, [](const SurfacePoint<dim>&) { return Point<dim>(Point<dim>::Constant(7)); },

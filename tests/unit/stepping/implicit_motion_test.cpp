@@ -68,7 +68,7 @@ TEST(ImplicitMotion, SettlesTheSameInAnotherFrame) {
     StepContext<2> context;
     context.dt = context.step.dt = long_step;
     context.constraints = system->reduction();
-    const auto motion = settle_motion<2>(*system, nullptr, context, {}, *start, *start, *momentum);
+    const auto motion = settle_motion<2>(*system, nullptr, context, {*start, *start}, *momentum);
     EXPECT_GT(system->linearisation_number(), 0u);
     EXPECT_TRUE(motion.is_settled);
     std::vector<double> own;

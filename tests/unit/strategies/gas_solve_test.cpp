@@ -48,7 +48,7 @@ TEST(GasSolve, GasBehindAPistonOfAClosedTankCannotOpen) {
     strategy->prepare(blocks);
     SolveReport report;
     const std::vector<double> pressure =
-        solve_with_gas(gas, *strategy, blocks, {"S2", 1e-10, 1e-12}, rhs, unknowns, report);
+        solve_with_gas(gas, {*strategy, blocks, {"S2", 1e-10, 1e-12}}, rhs, unknowns, report);
     EXPECT_EQ(pressure[0], 1.5) << name;
     unknowns.pressure->update(-1.5, one, 1);
     EXPECT_LT(unknowns.pressure->normInf(), 1e-6) << name;
@@ -86,7 +86,7 @@ TEST(GasSolve, GasWithinOneShellPushesOnNothing) {
   strategy->prepare(problem.system);
   SolveReport report;
   const std::vector<double> pressure =
-      solve_with_gas(gas, *strategy, problem.system, {"S2", 1e-10, 1e-12}, rhs, unknowns, report);
+      solve_with_gas(gas, {*strategy, problem.system, {"S2", 1e-10, 1e-12}}, rhs, unknowns, report);
   EXPECT_EQ(pressure[0], 1.5);
   EXPECT_LT(unknowns.solid->normInf(), 1e-12);
 }
@@ -144,7 +144,7 @@ TEST(GasSolve, TheOnlyVoidCannotOpen) {
   strategy.prepare(blocks);
   SolveReport report;
   const std::vector<double> pressure =
-      solve_with_gas(gas, strategy, blocks, {"S2", 1e-10, 1e-12}, rhs, unknowns, report);
+      solve_with_gas(gas, {strategy, blocks, {"S2", 1e-10, 1e-12}}, rhs, unknowns, report);
   EXPECT_EQ(pressure[0], 1.5);
 }
 
@@ -177,7 +177,7 @@ TEST(GasSolve, WhatABubbleLacksIsMadeGoodInTheStep) {
   strategy->prepare(blocks);
   SolveReport report;
   const std::vector<double> pressure =
-      solve_with_gas(gas, *strategy, blocks, {"S1", 1e-10, 1e-12}, rhs, unknowns, report);
+      solve_with_gas(gas, {*strategy, blocks, {"S1", 1e-10, 1e-12}}, rhs, unknowns, report);
   EXPECT_NEAR(conductance * pressure[0] + gas.rates(unknowns, false)[0], bubble.missing / step_dt,
               1e-9);
 }
