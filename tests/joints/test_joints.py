@@ -190,7 +190,8 @@ class InWater(unittest.TestCase):
         for impulses in ("two halves", "end of step"):
             mass, (way, speed), (expected_way, expected_speed) = sprung_piston(impulses)
             self.assertTrue(1100 < mass < 1160)  # 400 and two columns of .75 together
-            self.assertAlmostEqual(way, expected_way, delta=1e-12)
+            # The part of the spring that goes over to implicit is 1e-5 here.
+            self.assertAlmostEqual(way, expected_way, delta=1e-10)
             # Where the piston is then, the columns are others by what a cell sees of that.
             self.assertAlmostEqual(speed, expected_speed, delta=3e-4 * speed)
 
