@@ -75,8 +75,8 @@ class LiquidFluid {
   /// Distance from each point to the surface at the end of the last step [m], 1e300 where nothing
   /// is stored. The same on all ranks. Collective; all ranks ask for the same points.
   virtual std::vector<double> surface_distances(const std::vector<Point<dim>>& points) const = 0;
-  /// True if x is in a closed solid, where the distance goes on but no liquid is. Local, the same on
-  /// all ranks. Default: nowhere.
+  /// True if x is in a closed solid, where the distance goes on but no liquid is. Local, the same
+  /// on all ranks. Default: nowhere.
   virtual bool in_solid(const Point<dim>&) const { return false; }
   /// By solid of the frozen surface. Collective.
   virtual std::vector<WaterLevel> levels_at_solids() const = 0;
