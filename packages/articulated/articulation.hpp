@@ -58,9 +58,9 @@ class Articulation {
   Eigen::VectorXd rates_of(const Joint<dim>& joint) const;
   const std::vector<char>& given() const { return given_; }
   bool any_acts() const;  ///< springs and dampers
-  /// Springs and dampers of the present step or kick, by rate: torque = constant - slope rate.
-  /// Those of a step are those of its middle; dampers are implicit before the bodies move, and half
-  /// so after it. Fully implicit ones are those of the end.
+  /// Springs and dampers of the present step or kick, by rate: torque = constant - slope rate. In
+  /// the paper's step springs are taken at its middle; dampers are implicit before the bodies move,
+  /// and half so after it. Fully implicit ones are taken at its end.
   ControlLaw control() const;
   /// True after the bodies went to their places of the end of the step.
   bool has_moved() const { return has_moved_; }

@@ -32,7 +32,7 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public Wor
   RCP<const LinearOperator> mass() const override { return mass_; }
   RCP<const LinearOperator> implicit_force(double dt) const override;
   void explicit_momentum(double time, double dt, Vector& momentum) const override;
-  void leave_order_to_scheme() override { articulation_->take_kicks(); }
+  void take_kicks() override { articulation_->take_kicks(); }
   void begin_step(double time, double dt) override { articulation_->begin_step(time, dt); }
   Momentum<dim> external_impulse(double, double) const override { return {}; }
   SolidWork solid_work(double time, double dt, const Vector& velocity,

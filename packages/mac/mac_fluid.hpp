@@ -43,7 +43,7 @@ class MacFluid : public FluidDiscretization<dim>, public PeriodicFluid<dim> {
 
   bool begin_step(double time, double dt, const std::function<double()>& solid_speed) override;
   void begin_prediction() override { flow_.prediction = flow_.velocity; }
-  void leave_order_to_scheme() override { flow_.take_kicks(); }
+  void take_kicks() override { flow_.take_kicks(); }
   bool begin_advection_velocity(double dt) override;
   ForceImpulse<dim> add_forces(double time, double dt) override;
   void advect(double time, double dt, const MovingSurface<dim>& surface) override;

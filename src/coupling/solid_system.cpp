@@ -424,9 +424,9 @@ void SolidSystem<dim>::find_reduction() {
 }
 
 template <int dim>
-void SolidSystem<dim>::leave_order_to_scheme() {
+void SolidSystem<dim>::take_kicks() {
   for (const auto& solid_model : models_)
-    solid_model->leave_order_to_scheme();
+    solid_model->take_kicks();
 }
 
 template <int dim>

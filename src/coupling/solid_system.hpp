@@ -105,7 +105,7 @@ class SolidSystem {
   }
   /// M_S alone; padding rows are zero. Applied part by part.
   RCP<const LinearOperator> mass() const { return full_block(Teuchos::null, 0); }
-  void leave_order_to_scheme();                 ///< steps are two kicks and a drift
+  void take_kicks();                            ///< steps are two kicks and a drift
   void set_gravity(const Point<dim>& gravity);  ///< takes that of the next step [m/s^2]
   /// A step begins: true if other dofs are unknowns than before, on any rank. Collective.
   bool begin_step(double time, double dt);

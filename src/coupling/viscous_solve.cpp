@@ -315,7 +315,7 @@ ViscousResult<dim> accept_solution(const ViscousOperator<dim>& op, const Viscous
 template <int dim>
 ViscousResult<dim> solve_viscous(const ViscousParts<dim>& parts, const ViscousRequest& request) {
   const auto& [system, fluid, solids, coupling, solid_block, near_null_space] = parts;
-  // Where the solve is for surface tension alone, nothing ties solids to it.
+  // A solve for surface tension alone has no ties to solids, which then are no unknowns of it.
   const bool with_solids =
       solids.has_unknowns() &&
       sum_all(solids.comm(), static_cast<GlobalIndex>(system.links.size())) > 0;

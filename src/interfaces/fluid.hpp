@@ -189,9 +189,10 @@ class FluidDiscretization : public PlugIn {
 
   // The stages of a step.
 
-  /// The scheme of time is of second order by itself, in kicks and drifts: what the fluid does for
-  /// that on its own account ends. Before the first step; local. Default: it does nothing.
-  virtual void leave_order_to_scheme() {}
+  /// Steps are two kicks and a drift (stepping/step/kick_drift_kick.cpp): what `advect` takes is
+  /// the velocity that the first kick gave, less what `begin_advection_velocity` had added before
+  /// that. Before the first step; local. Default: nothing is added then, nor taken off.
+  virtual void take_kicks() {}
   /// Begins a step from `time` to time + dt: tiles may be made where things will move. Returns true
   /// if u^n lives on other cells than when it was accepted, without being free of divergence there:
   /// then the geometry is to be frozen anew. `solid_speed`: that of the fastest solid [m/s];
@@ -201,9 +202,10 @@ class FluidDiscretization : public PlugIn {
     return false;
   }
   virtual void begin_prediction() = 0;  ///< u* := u^n
-  /// u* := the velocity to carry things over a step of dt, before F2 makes it free of divergence:
-  /// u^n, or nearer to the middle of the step. True if it is as free of divergence as u^n where
-  /// there are no solids, so that F2 has nothing to do; the same on all ranks.
+  /// u* := the velocity to carry things over a step of dt, before F2, or the first of two kicks,
+  /// makes it free of divergence: u^n, or nearer to the middle of the step. True if it is as free
+  /// of divergence as u^n where there are no solids, so that F2 has nothing to do; the same on all
+  /// ranks.
   virtual bool begin_advection_velocity(double /*dt*/) {
     begin_prediction();
     return true;

@@ -106,9 +106,9 @@ class SolidModel : public PlugIn {
   /// else acts there if nothing takes it up. Never part of S2: momentum stays exact. Default:
   /// nothing. Collective.
   virtual void add_midpoint_correction(double, Vector&) const {}
-  /// Steps are two kicks and a drift: implicit forces of each kick act over half a step. Before the
-  /// first step; local. Default: it does nothing.
-  virtual void leave_order_to_scheme() {}
+  /// Steps are two kicks and a drift: implicit forces of each kick act over half a step, and both
+  /// are kept. Before the first step; local. Default, for models without implicit forces: nothing.
+  virtual void take_kicks() {}
   /// Gravity of the step that is about to begin [m/s^2], the same on all ranks. Default: nothing.
   /// Collective.
   virtual void set_gravity(const Point<dim>&) {}

@@ -61,7 +61,8 @@ struct MacFlow {
   void forget_speed() { largest_speed_.reset(); }
   /// Returns the rates of change that advection of second order keeps; none: of first order. Local.
   std::vector<StoredField> rates();
-  /// Where advection is of second order, it is so in steps of kicks from now on. Local.
+  /// Advection of second order keeps its rates for steps of kicks from now on; that of first order
+  /// stays. Local.
   void take_kicks();
 
   /// The fields and times. Loading finds the tiles already as they were. Collective.

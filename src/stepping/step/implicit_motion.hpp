@@ -24,11 +24,12 @@ RCP<const LinearOperator> implicit_response(const SolidSystem<dim>& solids, doub
 template <int dim>
 ContactResponse joint_response(const SolidSystem<dim>& solids, double dt);
 
-/// Where the search for the motion of solids begins, and what it must fulfil.
+/// A search for the motion of solids: its begin, and what else velocities must fulfil.
 struct MotionSearch {
   const Vector& predicted;  ///< velocity of the linearised forces; defines Q
   const Vector& first;      ///< first guess: `predicted`, or what else has been asked of it
-  /// What velocities must fulfil besides, if anything, done to those of every linearisation.
+  /// Changes the velocities of every linearisation so that they fulfil what is asked besides; null:
+  /// nothing is.
   std::function<void(Vector&)> adjust = {};
   /// The `implicit_response` of now, for who has it; null: made when it is needed.
   RCP<const LinearOperator> known_response = {};

@@ -1,14 +1,14 @@
 // A step in two kicks with a drift between them, from t^n to t^{n+1} = t^n + dt: Störmer and
 // Verlet's scheme for the coupled system. The geometry is that of x^n in 1, of x^{n+1} in 4.
 //
-//   1  kick   u* = u^n + dt/2 (g + nu lap u*), then A p - B V = -G^T u*,
-//             B^T p + C V = M_S V^n + dt/2 f + W^T M_F u*_F;  u^{n+1/2} = u* - M^-1 G p, V^{n+1/2}
-//             = V; contacts act on V: gap + dt J_n V >= 0
+//   1  kick   u* = u^n + dt/2 (a + g + nu lap u*), a what advection changed in the last step, then
+//             A p - B V = -G^T u*,  B^T p + C V = M_S V^n + dt/2 f + W^T M_F u*_F;
+//             u^{n+1/2} = u* - M^-1 G p, V^{n+1/2} = V; contacts act on V: gap + dt J_n V >= 0
 //   2  drift  x^{n+1} = x^n + dt V^{n+1/2}; bodies turn as their angular momenta have it. Joints
 //             are closed at x^{n+1} by impulses of 1 (RATTLE), which then is solved anew
-//   3         u_ADV = u^{n+1/2}, free of divergence with (x^{n+1} - x^n) / dt; u^{n+1/2}, scalars
-//             and the free surface are carried along it
-//   4  kick   as 1, at x^{n+1}: u^{n+1}, V^{n+1}
+//   3         u_ADV = u^{n+1/2}, free of divergence with (x^{n+1} - x^n) / dt; u^{n+1/2} - dt/2 a,
+//             scalars and the free surface are carried along it
+//   4  kick   as 1 without a, at x^{n+1}: u^{n+1}, V^{n+1}
 #include "stepping/step/kick_drift_kick.hpp"
 
 #include <fmt/format.h>

@@ -74,8 +74,8 @@ TimeScheme<dim>::TimeScheme(Components<dim>& components, const StepOptions& opti
       time_(start_time) {
   if (!is_of_second_order_)
     return;
-  components.fluid->leave_order_to_scheme();
-  components.solids->leave_order_to_scheme();
+  components.fluid->take_kicks();
+  components.solids->take_kicks();
 }
 
 template <int dim>
