@@ -257,6 +257,8 @@ double unresolved_part(const JointControl& control, double dt) {
   for (const CoordinateControl& one : control.coordinates) {
     if (!one.acts())
       continue;
+    if (one.inertia <= 0)  // no step resolves what has none
+      return 1;
     const double decay = one.damping * dt / one.inertia;
     largest = std::max(largest, one.stiffness * dt * dt / one.inertia + decay * decay);
   }
