@@ -50,7 +50,7 @@ def read_table(path, names, numbers):
         elif columns is None and line:
             columns = next(csv.reader([line]))
             for missing in [name for name in (*names, *numbers) if name not in columns]:
-                raise PlotError(f"'{path}' has no column '{missing}'; is it a table of converge?")
+                raise PlotError(f"'{path}' has no column '{missing}'.")
         elif line:
             row = dict(zip(columns, next(csv.reader([line]))))
             if len(row) != len(columns):

@@ -1,5 +1,6 @@
 """Damaged files of systems: `solve` says what is wrong with each, with exit code 2, and never breaks."""
 import concurrent.futures
+import csv
 import os
 import random
 import shutil
@@ -13,6 +14,7 @@ import numpy
 
 from program import SOLVE, simulate, with_checksum, without_checksum
 
+ROOT = Path(__file__).resolve().parents[2]
 SOLVER = """<ParameterList name="direct"><Parameter name="Type" type="string" value="direct"/></ParameterList>"""
 TABLES = ["A", "B transposed", "C", "pressure rhs", "solid rhs", "null space/0"]
 
@@ -164,9 +166,34 @@ class Systems(unittest.TestCase):
         result = self.solve(path, "--tolerance", 1e-5, "--output", self.folder / "compared")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("no errors, as there is no reference: ", result.stdout)
-        row = (self.folder / "compared" / "solvers.csv").read_text().splitlines()[-1].split(",")
-        self.assertEqual(row[1], "direct")
-        self.assertEqual(row[-2], "")
+        row = self.compared()[-1]
+        self.assertEqual(row["strategy"], "direct")
+        self.assertEqual(row["error"], "")
+
+    def compared(self):
+        lines = (self.folder / "compared" / "solvers.csv").read_text().splitlines()
+        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+    def test_histories_are_of_true_residuals(self):
+        """Each power of ten from zero: residuals below it, iterations that grow, errors that fall; the inverses really used."""
+        lists = [self.folder / "direct.xml", *(ROOT / f"xml-params/solvers/{name}.xml" for name in ("schur-cg", "minres-teko"))]
+        result = self.solve(ROOT / "tests/data/light-disc.h5", *lists[1:], "--history", "--repeat", 2, "--tolerance", 1e-6,
+                            "--output", self.folder / "compared")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        rows = self.compared()
+        for path, inverses in zip(lists, ("C: exact", "A: Multigrid; C: exact", "A: Multigrid; C: exact")):
+            own = [row for row in rows if row["file"] == str(path)]
+            self.assertEqual([float(row["tolerance"]) for row in own], [.1, .01, .001, 1e-4, 1e-5, 1e-6])
+            for row in own:
+                self.assertLessEqual(max(float(row["pressure_residual"]), float(row["solid_residual"])), float(row["tolerance"]))
+                self.assertEqual(row["inverses"], inverses)
+            iterations = [int(row["iterations"]) for row in own]
+            self.assertEqual(iterations, sorted(iterations))
+        iterated = [float(row["error"]) for row in rows if row["strategy"] != "direct"]
+        self.assertLess(iterated[5], 1e-3 * iterated[0])
+        refused = self.solve(self.system, "--repeat", 0)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--repeat 0 must be at least 1", refused.stderr)
 
     def test_bad_solver_files_are_told_first(self):
         bad = self.folder / "bad.xml"

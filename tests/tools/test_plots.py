@@ -1,4 +1,4 @@
-"""plot-study and plot-curves: names with units, legends that hide nothing, ticks that one can read, files, broken tables."""
+"""plot-study, plot-curves and plot-solvers: names with units, legends that hide nothing, ticks that one can read, files, broken tables."""
 import contextlib
 import importlib.machinery
 import importlib.util
@@ -27,7 +27,7 @@ def load(name):
     return module
 
 
-plot_study, plot_curves = load("plot-study"), load("plot-curves")
+plot_study, plot_curves, plot_solvers = load("plot-study"), load("plot-curves"), load("plot-solvers")
 COLUMNS = "series,quantity,value,reference,error,core_seconds,spread,abscissa"
 HEAD = """# title: Made up, with a title that is so long that it does not fit above a picture of one or two columns unless it is broken
 # abscissa: h
@@ -210,6 +210,23 @@ class Files(Plots):
         self.assertNotIn(b"/Type3", (self.folder / "fig.3.pdf").read_bytes())  # journals refuse it
         self.assertEqual(self.run_tool(plot_curves, self.write(curves()), self.folder / "curves.svg"), (0, ""))
         self.assertIn("</svg>", (self.folder / "curves.svg").read_text())
+
+    def test_histories_of_solvers_fall_from_their_first_solve(self):
+        """In any order of the rows; a list whose solves have no error is in the picture of residuals alone."""
+        head = "file,strategy,tolerance,iterations,setup_seconds,solve_seconds,pressure_residual,solid_residual,error\n"
+        rows = [f"lists/{name}.xml,cg,{10.0 ** -k},{3 * k},0.5,{k},{10.0 ** -k / 2},{10.0 ** -k / 3},{'' if name == 'b' else 10.0 ** -k}\n"
+                for name in "ab" for k in (3, 1, 2)]
+        figure = plot_solvers.figure_of(plot_solvers.read_table(self.write(head + "".join(rows)), ["file"], plot_solvers.NUMBERS)[1])
+        residuals, _, errors, _ = figure.axes
+        self.assertEqual([text.get_text() for text in figure.axes[1].get_legend().get_texts()], ["a", "b"])
+        for line in residuals.lines:
+            self.assertEqual(list(line.get_xdata()), [3, 6, 9])
+            self.assertEqual(list(line.get_ydata()), [.05, .005, .0005])
+        self.assertEqual([len(line.get_xdata()) for line in errors.lines], [3, 0])
+        self.assertEqual(list(figure.axes[1].lines[0].get_xdata()), [1.5, 2.5, 3.5])
+        code, told = self.run_tool(plot_solvers, self.write("file,iterations\na,1\n"), self.folder / "picture.png")
+        self.assertEqual(code, 2)
+        self.assertIn("has no column 'tolerance'", told)
 
     def test_a_large_picture_gets_fewer_dots(self):
         figure = self.study(self.write(table(["flux", "voxel"])))

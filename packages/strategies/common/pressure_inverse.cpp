@@ -193,12 +193,18 @@ bool leaves_rows_empty(const RCP<const LinearOperator>& pressure_block) {
   return !a.is_null() && is_any(a->getRowMap(), empty_rows(*diagonal_of(*a)));
 }
 
+std::string inverse_type(const Teuchos::ParameterList& list, bool is_multigrid) {
+  if (is_multigrid)
+    return "Multigrid";
+  return type_of(list) == "Automatic" ? "MueLu" : type_of(list);
+}
+
 RCP<const LinearOperator> pressure_inverse(const BlockSystem& system,
                                            const Teuchos::ParameterList& given) {
   Teuchos::ParameterList list(given);
   if (type_of(list) == "Automatic") {  // whatever it says of the multigrid
     list = Teuchos::ParameterList();
-    list.set("Type", "MueLu");
+    list.set("Type", inverse_type(given, false));
   }
   auto op = system.pressure_block();
   if (const auto a = assembled(op); !a.is_null()) {

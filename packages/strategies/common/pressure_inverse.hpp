@@ -20,6 +20,8 @@ Teuchos::ParameterList incomplete_cholesky_list(const Teuchos::ParameterList& li
 
 /// True if the list asks for the multigrid of this system.
 bool is_multigrid(const Teuchos::ParameterList& list, const BlockSystem& system);
+/// Returns the type of the inverse that a list leads to, what "Automatic" chooses included.
+std::string inverse_type(const Teuchos::ParameterList& list, bool is_multigrid);
 MultigridOptions multigrid_options(const Teuchos::ParameterList& list);
 /// The multigrid's cycle on pressures in the fluid's own order. Collective.
 RCP<const LinearOperator> multigrid_in_fluid_order(const BlockSystem& system,

@@ -278,6 +278,15 @@ void RefinedStrategy::prepare(const BlockSystem& system) {
   setup_seconds_ += Teuchos::Time::wallTime() - start;
 }
 
+std::string RefinedStrategy::inverses() const {
+  std::string text;
+  if (pressure_list_)
+    text = "A: " + inverse_type(*pressure_list_, is_single_precision_);
+  if (solid_.is_built())
+    text += (text.empty() ? "C: " : "; C: ") + solid_.description();
+  return text;
+}
+
 SolveReport RefinedStrategy::solve(const BlockSystem& system, const BlockVector& rhs,
                                    BlockVector& solution, const SolveRequest& request) {
   if (!is_ready(system))

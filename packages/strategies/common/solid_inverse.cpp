@@ -118,6 +118,22 @@ void SolidInverse::build_automatic(const BlockSystem& system) {
     exact_ = split_->with({});
 }
 
+std::string SolidInverse::description() const {
+  if (!iterates())
+    return "exact";
+  if (type_ != "Automatic" && type_ != "Exact")
+    return type_;
+  std::string text;
+  for (const Iterated& part : iterated_) {
+    const std::string way =
+        "conjugate gradients" +
+        (part.preconditioner_type.empty() ? "" : " with " + part.preconditioner_type);
+    if (text.find(way) == std::string::npos)
+      text += (text.empty() ? "" : ", ") + way;
+  }
+  return text;
+}
+
 /// Chooses an inverse close to C, because the outer iteration is preconditioned with it.
 const RCP<const LinearOperator>& SolidInverse::approximate() const {
   if (!approximate_.is_null() || exact_.is_null())

@@ -40,6 +40,8 @@ class SolidInverse {
   /// Returns the inverse that the list names: symmetric positive definite and, unless it iterates
   /// itself, linear. Built when first asked for, which is collective then.
   const RCP<const LinearOperator>& approximate() const;
+  /// Returns what has been built, for tables: "exact", "MueLu", "conjugate gradients with Jacobi".
+  std::string description() const;
   /// "Automatic" and nothing more.
   bool is_automatic() const { return type_ == "Automatic"; }
   /// Inner iterations since the last call.
