@@ -87,11 +87,10 @@ class TwoPhases(unittest.TestCase):
             self.assertLess(max(column(history, "momentum_error")), 1e-14)
             return column(bodies, "vy")[-1] / column(bodies, "time")[-1] / exact - 1
         for interface in ("particle level set", "volume of fluid"):
-            for piston, level in ((0., .3), (.01, .77), (.3, .3), (.5, .5), (.7, .01)):
-                for mass, ratio in ((62.5, 1e3), (1e-3, 1e3), (62.5, 1e6)):
-                    with self.subTest(piston=piston, level=level, mass=mass, ratio=ratio, interface=interface):
-                        self.assertLess(abs(error(piston, level, "mixed face", mass, ratio, interface)), 2e-8)
-            for level in (.01, .3, .77):
+            for piston, level, mass, ratio in ((0., .3, 62.5, 1e3), (.01, .77, 1e-3, 1e3), (.3, .3, 62.5, 1e6), (.5, .5, 62.5, 1e3), (.7, .01, 1e-3, 1e3)):
+                with self.subTest(piston=piston, level=level, mass=mass, ratio=ratio, interface=interface):
+                    self.assertLess(abs(error(piston, level, "mixed face", mass, ratio, interface)), 2e-8)
+            for level in (.01, .77):
                 self.assertLess(abs(error(.5, level, "flux", interface=interface)), 2e-8)
         for piston in (0., .3, .7):
             off = -250 / 32 * (.5 - piston)  # water [kg/m]
