@@ -204,7 +204,7 @@ double curvature(const MacDomain<dim>& domain, const CellField& phi, int wet, in
 }
 
 namespace {
-/// Of all owned faces that the surface crosses. `is_dry`: of stored cells.
+/// Finds the pushes on owned faces. `is_dry`: of stored cells.
 template <int dim>
 std::vector<SurfacePush> find_pushes(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                                      const FreeSurface<dim>& surface,
