@@ -36,6 +36,21 @@ def falling_drop(ratio, **phases):
     return text
 
 
+def piston_between_columns(piston, level, coupling, mass=62.5, ratio=1e3, interface="particle level set"):
+    """A piston fills a column that is open at both ends: gas below it, water on it up to a surface, gas above. Its ends and the surface are off
+    the faces of cells by these parts of one. Returns the scene and the acceleration of a newton, 1/(m + A (rho_1 L_1 + rho_2 L_2))."""
+    width, cells = .25, 8
+    h = width / cells
+    length = .25 + (level - piston) * h - .125  # the water's
+    column = {"Column": {"Type": "box", "Lower": (-1., .5 + piston * h), "Upper": (2., .75 + level * h)}}
+    body = {"Piston": {"Type": "rigid body", "Geometry": {"Shape": "box", "Size": (width, .25)}, "Mass": mass, "Force": (0., 1.),
+                       "Position": (width / 2, .5 + piston * h), "Locked": ("x", "rotation")}}
+    text = scene(cells=32, ratio=ratio, upper=(width, 1.), gravity=(0., 0.), step=1e-4, surface={"Interface": {"Type": interface}, "Liquid": column},
+                 sides={"x lower": "slip wall", "x upper": "slip wall", "y lower": "open", "y upper": "open"}, Solids=body, Contact={"Type": "none"},
+                 Coupling={"Type": coupling}, Solver={"Tolerance": 1e-11})
+    return text, 1 / (mass + 1000 * width * (length + (.75 - length) / ratio))
+
+
 def rising_bubble(cells):
     """Case 1 of Hysing et al. (2009)."""
     surface = {"Surface Tension": 24.5, "Liquid": {"All": {"Type": "box", "Lower": (-1., -1.), "Upper": (2., 3.)}},
@@ -62,6 +77,24 @@ class TwoPhases(unittest.TestCase):
                      scene(3, 16, Solids=BALL))):
             with self.subTest(number):
                 self.assert_rests(text)
+
+    def test_a_piston_between_two_columns(self):
+        """A piston pushes as much of both fluids as there is, wherever in cells its ends and the surface between them are. `flux` takes the
+        fluid from the centres of the cells that its ends are in: exact where they are there, else the water is up to half a cell off."""
+        def error(*options, **more):
+            text, exact = piston_between_columns(*options, **more)
+            history, bodies = histories(text, "--steps", 3)
+            self.assertLess(max(column(history, "momentum_error")), 1e-14)
+            return column(bodies, "vy")[-1] / column(bodies, "time")[-1] / exact - 1
+        for interface in ("particle level set", "volume of fluid"):
+            for piston, level, mass, ratio in ((0., .3, 62.5, 1e3), (.01, .77, 1e-3, 1e3), (.3, .3, 62.5, 1e6), (.5, .5, 62.5, 1e3), (.7, .01, 1e-3, 1e3)):
+                with self.subTest(piston=piston, level=level, mass=mass, ratio=ratio, interface=interface):
+                    self.assertLess(abs(error(piston, level, "mixed face", mass, ratio, interface)), 2e-8)
+            for level in (.01, .77):
+                self.assertLess(abs(error(.5, level, "flux", interface=interface)), 2e-8)
+        for piston in (0., .3, .7):
+            off = -250 / 32 * (.5 - piston)  # water [kg/m]
+            self.assertAlmostEqual(error(piston, .3, "flux"), 1 / (1 + off * piston_between_columns(piston, .3, "flux")[1]) - 1, delta=1e-3)
 
     def test_a_heavy_drop_falls_freely(self):
         """The gas takes a thousandth of its weight. With "plain" the gas that it meets pushes it back and flattens it."""

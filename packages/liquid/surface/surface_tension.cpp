@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "liquid/surface/closed_surfaces.hpp"
 #include "staggered/state/face_moments.hpp"
 
 namespace lockstep {
@@ -202,33 +203,51 @@ double curvature(const MacDomain<dim>& domain, const CellField& phi, int wet, in
   return std::clamp(fit.curvature().value_or(0), -most, most) / h;
 }
 
+namespace {
+/// Finds the pushes on owned faces. `is_dry`: of stored cells.
+template <int dim>
+std::vector<SurfacePush> find_pushes(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
+                                     const FreeSurface<dim>& surface,
+                                     const std::vector<char>& is_dry, double impulse) {
+  const TiledGrid<dim>& grid = domain.grid;
+  std::vector<SurfacePush> pushes;
+  for (int axis = 0; axis < dim; ++axis)
+    grid.for_each_owned_face(axis, [&](int face) {
+      if (geometry.state.faces[axis][face] != FaceState::free)
+        return;
+      const auto [lower, upper] = cells_of_face(grid, geometry.state.cells, axis, face);
+      if (lower < 0 || upper < 0 || is_dry[lower] == is_dry[upper])
+        return;
+      const bool is_above = is_dry[upper];
+      const int wet = is_above ? lower : upper, dry = is_above ? upper : lower;
+      const double place = surface.at_true_place ? surface.crossing(wet, dry) : 1;
+      const double kappa = surface.curvature(wet, axis, is_above ? 1 : 0, place);
+      pushes.push_back({axis, face, (is_above ? -1 : 1) * impulse * kappa});
+    });
+  return pushes;
+}
+}  // namespace
+
 template <int dim>
 Momentum<dim> push_surface(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                            const FreeSurface<dim>& surface, double tension, double dt,
                            FaceField<dim>& velocity) {
-  const TiledGrid<dim>& grid = domain.grid;
   const auto& cells = geometry.state.cells;
+  std::vector<char> is_dry(cells.size());
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    is_dry[cell] =
+        surface.has_gas() ? !surface.wet(static_cast<int>(cell)) : cells[cell] == CellState::air;
+  std::vector<SurfacePush> pushes = find_pushes(domain, geometry, surface, is_dry, dt * tension);
+  hold_closed_surfaces(domain, geometry, is_dry, pushes);
   Momentum<dim> impulse;
+  auto push = pushes.begin();
   for (int axis = 0; axis < dim; ++axis) {
-    FaceMoments<dim> moments(grid, axis);
-    grid.for_each_owned_face(axis, [&](int face) {
-      if (geometry.state.faces[axis][face] != FaceState::free)
-        return;
-      const auto [lower, upper] = cells_of_face(grid, cells, axis, face);
-      const auto is_dry = [&](int cell) {
-        return surface.has_gas() ? !surface.wet(cell) : cells[cell] == CellState::air;
-      };
-      if (lower < 0 || upper < 0 || is_dry(lower) == is_dry(upper))
-        return;
-      const bool is_above = is_dry(upper);
-      const int wet = is_above ? lower : upper, dry = is_above ? upper : lower;
-      const double place = surface.at_true_place ? surface.crossing(wet, dry) : 1;
-      const double kappa = surface.curvature(wet, axis, is_above ? 1 : 0, place);
-      const double push = (is_above ? -1 : 1) * dt * tension * kappa;
-      const double change = push * geometry.face_table(axis, face).gradient;
-      velocity[axis][face] += change;
-      moments.add(face, geometry.mass(axis, face) * change);
-    });
+    FaceMoments<dim> moments(domain.grid, axis);
+    for (; push != pushes.end() && push->axis == axis; ++push) {
+      const double change = push->jump * geometry.face_table(axis, push->face).gradient;
+      velocity[axis][push->face] += change;
+      moments.add(push->face, geometry.mass(axis, push->face) * change);
+    }
     impulse += moments.total();
   }
   return impulse;

@@ -15,7 +15,8 @@ double curvature(const MacDomain<dim>& domain, const CellField& phi, int wet, in
 
 /// Explicit capillary force: surface tension sigma [N/m] is a known pressure jump p_s = sigma kappa
 /// where the surface crosses a face (ghost fluid). Adds its change over dt to the velocity of owned
-/// faces; the halo is not set. Returns its impulse on the liquid, of this rank. Local.
+/// faces; the halo is not set. Surfaces that close in themselves are not moved as a whole. Returns
+/// its impulse on the liquid, of this rank. Collective.
 template <int dim>
 Momentum<dim> push_surface(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
                            const FreeSurface<dim>& surface, double tension, double dt,

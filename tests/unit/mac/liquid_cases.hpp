@@ -46,8 +46,8 @@ InterfaceRegistry<dim> fixed_interfaces() {
 
 /// A fluid with a list "Free Surface" that the scene's fluid already has.
 template <int dim>
-std::unique_ptr<MacFluid<dim>> make_liquid(Case<dim>& scene) {
-  static const InterfaceRegistry<dim> interfaces = fixed_interfaces<dim>();
+std::unique_ptr<MacFluid<dim>> make_liquid(
+    Case<dim>& scene, const InterfaceRegistry<dim>& interfaces = fixed_interfaces<dim>()) {
   validate(scene.fluid, mac_parameters<dim>(&interfaces), Source{"test", {}}, "Fluid");
   validate(scene.domain, domain_parameters<dim>(), Source{"test", {}}, "Domain");
   return std::make_unique<MacFluid<dim>>(scene.fluid, scene.domain, world(), &interfaces);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "liquid/fractions/volume_of_fluid.hpp"
+#include "liquid/particles/level_set.hpp"
 #include "mac/transport/interface_transport.hpp"
 #include "viscous_cases.hpp"
 
@@ -271,6 +273,73 @@ TEST(TwoPhases, ARoundDropRests) {
   });
   const double jump = max_all(world(), inside) - max_all(world(), outside);
   EXPECT_NEAR(jump, 0.7 / 0.31, 0.03 * 0.7 / 0.31);
+}
+
+/// An interface model that is told how its surface is bent.
+template <typename Model>
+class OfGivenCurvature : public Model {
+ public:
+  using Model::Model;
+  static constexpr double given = 2.7;  ///< [1/m]; that of the ball is another
+  std::optional<double> curvature(int, int, int, double, const CellField&) const override {
+    return given;
+  }
+};
+
+template <int dim>
+InterfaceRegistry<dim> interfaces_of_given_curvature() {
+  InterfaceRegistry<dim> interfaces("interface model");
+  using Levels = OfGivenCurvature<LevelSet<dim>>;
+  using Fractions = OfGivenCurvature<VolumeOfFluid<dim>>;
+  const auto levels = [](const ParameterList& list, const MacDomain<dim>& domain) {
+    return std::make_unique<Levels>(domain, read_level_set_parameters(list));
+  };
+  interfaces.add("level set", "A distance.", level_set_parameters<dim>, levels);
+  interfaces.add("volume of fluid", "Fractions.", volume_of_fluid_parameters,
+                 [](const ParameterList& list, const MacDomain<dim>& domain) {
+                   return std::make_unique<Fractions>(domain,
+                                                      read_volume_of_fluid_parameters(list));
+                 });
+  return interfaces;
+}
+
+/// Tension is in balance with the pressure that is sigma kappa higher in the drop and uniform on
+/// both sides: with one kappa on all of the surface, whatever moves is round-off.
+template <int dim>
+void expect_balance_with_given_curvature(const std::string& type, double ratio) {
+  SCOPED_TRACE(type + fmt::format(", {}D, {}", dim, ratio));
+  const double tension = 0.7, dt = 1e-3;
+  Case<dim> scene = two_phases<dim>(16, liquid_density / ratio);
+  ParameterList& surface = scene.fluid.sublist("Free Surface");
+  surface.set("Surface Tension", tension).sublist("Interface").set("Type", type);
+  add_ball<dim>(scene, Point<dim>(Point<dim>::Constant(0.49) + 0.02 * Point<dim>::Unit(0)), 0.31);
+  const InterfaceRegistry<dim> interfaces = interfaces_of_given_curvature<dim>();
+  const auto fluid = make_liquid<dim>(scene, interfaces);
+  fluid->set_geometry(nullptr, BlockedFaces<dim>());
+  fluid->begin_prediction();
+  fluid->add_forces(0, dt);
+  const double pushed = largest_on_free_faces(*fluid);
+  EXPECT_GT(pushed, 0);
+  const auto pressure = make_vector(fluid->pressure_map());
+  {
+    const auto values = pressure->getDataNonConst();
+    const TiledGrid<dim>& grid = fluid->domain().grid;
+    int row = 0;
+    grid.for_each_owned_cell([&](int cell) {
+      const bool is_wet = fluid->liquid()->surface_distance(grid.center(cell)) < 0;
+      values[row++] = is_wet ? dt * tension * OfGivenCurvature<LevelSet<dim>>::given : 0;
+    });
+  }
+  fluid->project(*pressure);
+  EXPECT_LT(largest_on_free_faces(*fluid), 1e-14 * pushed);
+}
+
+TEST(TwoPhases, ADropOfGivenCurvatureRestsToRoundOff) {
+  for (const char* type : {"level set", "volume of fluid"})
+    for (const double ratio : {1.0, 1000.0, 1e6}) {
+      expect_balance_with_given_curvature<2>(type, ratio);
+      expect_balance_with_given_curvature<3>(type, ratio);
+    }
 }
 
 TEST(TwoPhases, ContradictionsAreRefused) {
