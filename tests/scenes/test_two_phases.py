@@ -7,6 +7,8 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
+from lockstep_frames import read_frames  # noqa: E402
 from scene_xml import xml  # noqa: E402
 from simulation import assert_close, attempt, column, histories, simulate, table, without_times  # noqa: E402
 
@@ -162,6 +164,48 @@ class TwoPhases(unittest.TestCase):
                 history = table(Path(folder) / "history.csv")
             self.assertLess(max(column(history, "momentum_error")), 1e-13, name)
             self.assertLess(max(column(history, "s2_iterations")), 80, name)
+
+    def shipped(self, folder, name, *options):
+        """Runs a shipped scene on a coarse grid; returns history.csv, of which that must hold which holds for all of them."""
+        simulate(SCENES / f"{name}.xml", folder, *options)
+        history = table(Path(folder) / "history.csv")
+        self.assertLess(max(column(history, "momentum_error")), 1e-13)
+        volume = column(history, "liquid_volume")
+        self.assertLess(max(volume) - min(volume), 1e-5 * volume[0])
+        return history
+
+    def test_a_boat_floats_in_the_wind(self):
+        """It floats with its draft of 6 cm, and the wind drives it."""
+        for wind, least, most in ((12, .01, .05), (0, -1e-4, 1e-4)):
+            with tempfile.TemporaryDirectory() as folder:
+                self.shipped(folder, "boat-with-air", "--set", "Domain/Cells={64, 32}", "--set", "Time/End=1", "--set", f"Constants/wind={wind}",
+                             "--set", "Output/Frames=false")
+                boat = table(Path(folder) / "bodies.csv")
+            height = column(boat, "y")[len(boat) // 2:]
+            self.assertAlmostEqual(sum(height) / len(height), .64, delta=.03)
+            self.assertGreater(column(boat, "x")[-1], least)
+            self.assertLess(column(boat, "x")[-1], most)
+
+    def test_a_column_of_bubbles(self):
+        """All of the gas is kept, the bubbles rise and the water sinks past them, and the ball stays at the surface."""
+        with tempfile.TemporaryDirectory() as folder:
+            history = self.shipped(folder, "bubble-column", "--set", "Domain/Cells={32, 80}", "--set", "Time/End=0.2", "--set", "Output/Frames=false")
+            ball = table(Path(folder) / "bodies.csv")
+        area = math.pi * (3 * .03 ** 2 + 2 * .035 ** 2)
+        rise = -column(history, "fluid_momentum_y")[-1] / (1000 * area)  # mean over the bubbles
+        self.assertGreater(rise, .3)
+        self.assertLess(rise, 1)
+        self.assertAlmostEqual(column(ball, "y")[-1], .76, delta=.02)
+
+    def test_wind_drags_the_water_along(self):
+        """The water gains a fifth of its momentum by the wind, mean over the last of 1.5 s."""
+        def momentum(wind):
+            with tempfile.TemporaryDirectory() as folder:
+                self.shipped(folder, "wave-and-wind", "--set", "Domain/Cells={64, 32}", "--set", f"Constants/wind={wind}")
+                frames = [frame["fluid"] for frame in read_frames(folder) if frame.time > 1.15]
+                return sum(frame.values("velocity")[..., 0][frame.values("phi") < 0].sum() for frame in frames) / len(frames)
+        without = momentum(0)
+        self.assertGreater(momentum(15), 1.1 * without)
 
     def test_ranks_and_restart(self):
         text = scene(cells=32, Solids=DISC, step=.004).replace("500.6", "700.0")
