@@ -43,9 +43,11 @@ class Strategies(unittest.TestCase):
             with self.subTest(scene.stem), tempfile.TemporaryDirectory() as folder:
                 runs = [Path(folder) / solver for solver in ("schur-cg", "minres-teko")]
                 contact = ["--set", OF_CONTACT] if has_contact(scene) else []
+                # Of air that is 1e-3 of the water 1e-11 is round-off of the pressures in the water.
+                tolerance = 1e-10 if '<ParameterList name="Gas">' in scene.read_text() else 1e-11
                 for run in runs:
                     simulate(scene, run, "--steps", "3", "--set", f"Domain/Cells={cells}", "--set", "Output/Frames=false", *contact,
-                             "--set", "Solver/Tolerance=1e-11", "--set", "Solver/Viscous Solve/Tolerance=3e-13",
+                             "--set", f"Solver/Tolerance={tolerance}", "--set", "Solver/Viscous Solve/Tolerance=3e-13",
                              "--set", f"Solver/File={ROOT}/xml-params/solvers/{run.name}.xml")
                 most = 1e-7 if contact else 1e-8
                 greatest = compare_runs(runs, most).greatest()
