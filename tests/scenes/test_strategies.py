@@ -43,7 +43,7 @@ class Strategies(unittest.TestCase):
             with self.subTest(scene.stem), tempfile.TemporaryDirectory() as folder:
                 runs = [Path(folder) / solver for solver in ("schur-cg", "minres-teko")]
                 contact = ["--set", OF_CONTACT] if has_contact(scene) else []
-                # Of air that is 1e-3 of the water 1e-11 is round-off of the pressures in the water.
+                # Where air of 1e-3 meets water, 1e-11 is round-off of the pressures in the water.
                 tolerance = 1e-10 if '<ParameterList name="Gas">' in scene.read_text() else 1e-11
                 for run in runs:
                     simulate(scene, run, "--steps", "3", "--set", f"Domain/Cells={cells}", "--set", "Output/Frames=false", *contact,
