@@ -88,7 +88,7 @@ template <int dim>
 void Liquid<dim>::begin(const Surface& surface) {
   lattice_.emplace(domain_.grid);
   if (!initial_distance_)
-    return;
+    return interface_->meet_solids(surface);
   if (!dry_points_.empty()) {
     const NearbySurface<dim> nearby(surface && !surface->empty() ? surface : nullptr, domain_.grid,
                                     2);

@@ -60,6 +60,9 @@ class InterfaceModel : public PlugIn {
   /// Initialises the liquid where `distance` is negative and outside the solids; near its surface
   /// it should be a distance. The volume found becomes the target. Collective.
   virtual void initialise(const SignedDistance<dim>& distance, const Surface& surface) = 0;
+  /// Tells the surfaces of solids at the present time, which after a restart no step has shown yet.
+  /// Default: they matter to nothing but `advance`. Local.
+  virtual void meet_solids(const Surface& /*surface*/) {}
   /// Moves the interface from t^n to t^{n+1}, final for the surfaces at t^{n+1}. Throws SolveError
   /// if the velocity is not finite. Collective.
   virtual void advance(const InterfaceStep<dim>& step) = 0;

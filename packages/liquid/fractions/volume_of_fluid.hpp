@@ -38,6 +38,7 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   std::function<void()> migrate(const TileMigration<dim>& migration) override;
 
   void initialise(const SignedDistance<dim>& distance, const Surface& surface) override;
+  void meet_solids(const Surface& surface) override { find_solids(surface); }
   void advance(const InterfaceStep<dim>& step) override;
   const CellField& distance() const override { return phi_; }
   /// By heights.
