@@ -149,8 +149,8 @@ Row try_strategy(const Candidate& candidate, const Trial& trial) {
     const auto strategy = trial.strategies.create(row.strategy, candidate.list);
     BlockVector solution = zero_like(stored.rhs);
     strategy->prepare(stored.system);
-    row.inverses = strategy->inverses();
     row.report = strategy->solve(stored.system, stored.rhs, solution, {"S2", candidate.tolerance});
+    row.inverses = strategy->inverses();
     if (trial.exact.solution)
       row.error = error_against(*trial.exact.solution, solution);
   } catch (const SolveError& error) {

@@ -52,7 +52,7 @@ class SolverStrategy : public PlugIn {
   /// projects). Collective.
   virtual SolveReport solve(const BlockSystem& system, const BlockVector& rhs,
                             BlockVector& solution, const SolveRequest& request) = 0;
-  /// Returns the inverses of blocks that the last `prepare` has chosen, for tables: "A: Multigrid;
+  /// Returns the inverses of blocks that the last `solve` has used, for tables: "A: Multigrid;
   /// C: exact". Default: nothing to tell. Local.
   virtual std::string inverses() const { return ""; }
 };

@@ -17,16 +17,16 @@ SurfaceCells find_surface_cells(const MacDomain<dim>& domain, const MacGeometry<
   const TiledGrid<dim>& grid = domain.grid;
   SurfaceCells cells{std::vector<char>(is_dry.size(), 0), std::vector<char>(is_dry.size(), 0)};
   grid.for_each_owned_cell([&](int cell) {
-    bool ends = geometry.near_surface(cell);
+    bool ends = false, is_crossed = false;
     for (int i = 0; i < 2 * dim; ++i) {
       const int other = grid.neighbor(cell, i / 2, i % 2);
       const bool is_there =
           other >= 0 && grid.in_domain(other) && geometry.state.cells[other] != CellState::solid;
       ends = ends || !is_there;
-      if (is_there && is_dry[cell] != is_dry[other])
-        cells.members[cell] = 1;
+      is_crossed = is_crossed || (is_there && is_dry[cell] != is_dry[other]);
     }
-    cells.ends[cell] = cells.members[cell] && ends;
+    cells.members[cell] = is_crossed;
+    cells.ends[cell] = is_crossed && (ends || geometry.near_surface(cell));
   });
   domain.halo.fill(cells.members);
   return cells;

@@ -31,7 +31,7 @@ class RefinedStrategy : public SolverStrategy {
   void prepare(const BlockSystem& system) final;
   SolveReport solve(const BlockSystem& system, const BlockVector& rhs, BlockVector& solution,
                     const SolveRequest& request) final;
-  std::string inverses() const final;
+  std::string inverses() const override;
 
  protected:
   /// Reads the parameters common to all strategies, which must all be there. `pressure_list` names

@@ -1,6 +1,9 @@
 #include "strategies/common/solid_inverse.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "solve/preconditioner.hpp"
@@ -63,6 +66,7 @@ SolidInverse::SolidInverse(const ParameterList& list) {
 
 void SolidInverse::reset() {
   exact_ = approximate_ = Teuchos::null;
+  approximate_types_.clear();
   iterated_.clear();
   split_.reset();
 }
@@ -123,18 +127,32 @@ std::string SolidInverse::description() const {
     return "exact";
   if (type_ != "Automatic" && type_ != "Exact")
     return type_;
-  std::string text;
-  for (const Iterated& part : iterated_) {
-    const std::string way =
-        "conjugate gradients" +
-        (part.preconditioner_type.empty() ? "" : " with " + part.preconditioner_type);
-    if (text.find(way) == std::string::npos)
-      text += (text.empty() ? "" : ", ") + way;
-  }
-  return text;
+  if (!approximate_types_.empty())
+    return fmt::format("{}", fmt::join(approximate_types_, ", "));
+  std::set<std::string> types;
+  for (const Iterated& part : iterated_)
+    types.insert(part.preconditioner_type);
+  types.erase("");  // matrix-free: no preconditioner
+  const std::string text = fmt::format("{}", fmt::join(types, ", "));
+  return "conjugate gradients" + (text.empty() ? "" : " with " + text);
 }
 
-/// Chooses an inverse close to C, because the outer iteration is preconditioned with it.
+/// Close to C, because an outer iteration is preconditioned with it: factors of sheets at any
+/// stiffness.
+RCP<const LinearOperator> SolidInverse::approximation(const Iterated& iterated,
+                                                      const InverseByCost::Rest& rest) const {
+  const RCP<const LinearOperator> factors = split_->cheap_factors(rest);
+  if (!factors.is_null()) {
+    approximate_types_.insert("exact");
+    return factors;
+  }
+  const std::string type = is_stiff(iterated.stiffness) ? "MueLu" : iterated.preconditioner_type;
+  approximate_types_.insert(type);
+  return type == iterated.preconditioner_type
+             ? iterated.preconditioner
+             : preconditioner_from_list(iterated.op, list_of(type), name_, iterated.motions);
+}
+
 const RCP<const LinearOperator>& SolidInverse::approximate() const {
   if (!approximate_.is_null() || exact_.is_null())
     return approximate_;
@@ -144,13 +162,8 @@ const RCP<const LinearOperator>& SolidInverse::approximate() const {
     return approximate_;
   }
   auto next = iterated_.begin();
-  approximate_ = split_->with([&](const auto&) {
-    const Iterated& iterated = *next++;
-    const bool is_close = iterated.preconditioner_type == "MueLu" || !is_stiff(iterated.stiffness);
-    return is_close
-               ? iterated.preconditioner
-               : preconditioner_from_list(iterated.op, list_of("MueLu"), name_, iterated.motions);
-  });
+  approximate_ =
+      split_->with([&](const InverseByCost::Rest& rest) { return approximation(*next++, rest); });
   return approximate_;
 }
 

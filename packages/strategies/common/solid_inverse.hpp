@@ -40,7 +40,8 @@ class SolidInverse {
   /// Returns the inverse that the list names: symmetric positive definite and, unless it iterates
   /// itself, linear. Built when first asked for, which is collective then.
   const RCP<const LinearOperator>& approximate() const;
-  /// Returns what has been built, for tables: "exact", "MueLu", "conjugate gradients with Jacobi".
+  /// Returns what has been built, for tables: "exact", "conjugate gradients with Jacobi", or where
+  /// `approximate` was asked for its types, "MueLu".
   std::string description() const;
   /// "Automatic" and nothing more.
   bool is_automatic() const { return type_ == "Automatic"; }
@@ -60,6 +61,8 @@ class SolidInverse {
     double stiffness = 1;
   };
 
+  RCP<const LinearOperator> approximation(const Iterated& iterated,
+                                          const InverseByCost::Rest& rest) const;
   void build_automatic(const BlockSystem& system);
   void build_named(const BlockSystem& system);
   Iterated prepared(const InverseByCost::Rest& rest) const;
@@ -69,7 +72,8 @@ class SolidInverse {
   std::string type_ = "Automatic";
   RCP<const LinearOperator> exact_;
   mutable RCP<const LinearOperator> approximate_;
-  std::optional<InverseByCost> split_;  ///< split by "Automatic" and "Exact"
+  mutable std::set<std::string> approximate_types_;  ///< types that `approximation` has chosen
+  std::optional<InverseByCost> split_;               ///< split by "Automatic" and "Exact"
   InverseByCost::Costly costly_;
   std::vector<Iterated>
       iterated_;  ///< parts that "Automatic" and "Exact" iterate on, in the order of their rests

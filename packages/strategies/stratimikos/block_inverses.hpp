@@ -14,7 +14,7 @@ class BlockInverses {
   virtual ~BlockInverses() = default;
   /// Eq. 16 in the order of the strategy's vectors.
   virtual const BlockSystem& system() const = 0;
-  /// True if this is the block of A, or of -C, that the library was given.
+  /// True if this is the block of A, or a multiple of that of -C, that the library was given.
   virtual bool is_pressure_block(const RCP<const LinearOperator>& op) const = 0;
   virtual bool is_solid_block(const RCP<const LinearOperator>& op) const = 0;
   /// A cycle of the multigrid for A.

@@ -7,6 +7,7 @@
 #include <Teko_RequestHandler.hpp>
 #include <Teuchos_VerboseObject.hpp>
 #include <Thyra_DefaultBlockedLinearOp.hpp>
+#include <Thyra_DefaultScaledAdjointLinearOp.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_RowMatrixTransposer.hpp>
 #include <Tpetra_Vector.hpp>
@@ -73,6 +74,15 @@ RCP<const LinearOperator> multiple(double factor, const CrsMatrix& matrix) {
   copy->scale(factor);
   copy->fillComplete(matrix.getDomainMap(), matrix.getRangeMap());
   return as_operator(RCP<const CrsMatrix>(copy));
+}
+
+/// The operator that `op` is a multiple of: factories take the sign off -C.
+RCP<const LinearOperator> without_factor(const RCP<const LinearOperator>& op) {
+  double factor = 1;
+  Thyra::EOpTransp transposed = Thyra::NOTRANS;
+  RCP<const LinearOperator> result;
+  Thyra::unwrap<double>(op, &factor, &transposed, &result);
+  return result;
 }
 
 /// Keeps what Trilinos prints while this lives: Teko says there why it fails, and nowhere else.
@@ -199,12 +209,20 @@ StratimikosStrategy::StratimikosStrategy(const ParameterList& complete, const So
 
 StratimikosStrategy::~StratimikosStrategy() = default;
 
+/// The inverse of A as the library names it, where that is not ours.
+std::string StratimikosStrategy::inverses() const {
+  const std::string ours = RefinedStrategy::inverses();
+  if (facts_.multigrid || facts_.pressure_inverse.empty())
+    return ours;
+  return "A: " + facts_.pressure_inverse + (ours.empty() ? "" : "; ") + ours;
+}
+
 bool StratimikosStrategy::is_pressure_block(const RCP<const LinearOperator>& op) const {
   return op == set_up_->getBlock(0, 0);
 }
 
 bool StratimikosStrategy::is_solid_block(const RCP<const LinearOperator>& op) const {
-  return system_->has_solid() && op == set_up_->getBlock(1, 1);
+  return system_->has_solid() && without_factor(op) == without_factor(set_up_->getBlock(1, 1));
 }
 
 RCP<const LinearOperator> StratimikosStrategy::schur_multigrid() const {

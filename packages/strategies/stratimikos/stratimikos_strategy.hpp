@@ -24,6 +24,7 @@ class StratimikosStrategy : public RefinedStrategy, private BlockInverses {
   ~StratimikosStrategy() override;
   static ParameterList valid_parameters();
   std::string name() const override { return "stratimikos"; }
+  std::string inverses() const override;
 
  private:
   /// `complete` has all parameters.

@@ -117,16 +117,15 @@ InverseByCost::Rest rest_of(const std::shared_ptr<const MatrixPart>& part,
 
 InverseByCost::InverseByCost(const RCP<const LinearOperator>& op, const NearNullSpace& space,
                              const std::string& name, Costly* costly)
-    : map_(domain_map(*op)), costly_(costly) {
+    : map_(domain_map(*op)), name_(name), costly_(costly) {
   const auto matrix = assembled(op);
   if (matrix.is_null())
     rests_.push_back({op, space, 1, nullptr});
   else
-    split(matrix, space, name);
+    split(matrix, space);
 }
 
-void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space,
-                          const std::string& name) {
+void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space) {
   const Communicator comm = map_->getComm();
   const std::vector<RowComponent> components = components_of_rows(*matrix, space);
   const auto is_block = rows_where(
@@ -134,7 +133,7 @@ void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const NearNullSpac
   if (!any(rows_where(components,
                       [](const RowComponent& one) { return one.n_rows > largest_dense_block; }),
            comm)) {
-    whole_ = as_operator(block_diagonal_inverse(matrix, largest_dense_block, name).inverse);
+    whole_ = as_operator(block_diagonal_inverse(matrix, largest_dense_block, name_).inverse);
     return;
   }
   const std::vector<GlobalIndex> large = large_components(components, comm);
@@ -143,22 +142,21 @@ void InverseByCost::split(const RCP<const CrsMatrix>& matrix, const NearNullSpac
            !std::binary_search(large.begin(), large.end(), one.id);
   });
   if (any(is_block, comm))
-    cheap_.push_back(part_of_blocks(std::make_shared<const MatrixPart>(*matrix, is_block), name));
+    cheap_.push_back(part_of_blocks(std::make_shared<const MatrixPart>(*matrix, is_block), name_));
   if (any(is_small, comm))
-    take_small(*matrix, space, components, is_small, name);
+    take_small(*matrix, space, components, is_small);
   for (const GlobalIndex id : large)
     take_large(*matrix, space,
-               rows_where(components, [id](const RowComponent& one) { return one.id == id; }),
-               name);
+               rows_where(components, [id](const RowComponent& one) { return one.id == id; }));
 }
 
 /// All of them at once: those whose factors are cheap, and the others as one rest.
 void InverseByCost::take_small(const CrsMatrix& matrix, const NearNullSpace& space,
                                const std::vector<RowComponent>& components,
-                               std::vector<bool> is_small, const std::string& name) {
+                               std::vector<bool> is_small) {
   const auto part = std::make_shared<const MatrixPart>(matrix, is_small);
-  const ComponentCholesky cholesky =
-      cheap_component_cholesky(part->matrix(), chosen(components, is_small), most_operations, name);
+  const ComponentCholesky cholesky = cheap_component_cholesky(
+      part->matrix(), chosen(components, is_small), most_operations, name_);
   if (any(cholesky.is_factored, map_->getComm()))
     cheap_.push_back({part, cholesky.inverse});
   auto is_factored = cholesky.is_factored.begin();
@@ -170,30 +168,44 @@ void InverseByCost::take_small(const CrsMatrix& matrix, const NearNullSpace& spa
     rests_.push_back(rest_of(std::make_shared<const MatrixPart>(matrix, is_small), space));
 }
 
+/// Null if they take more multiplications than `most_operations`.
+RCP<const LinearOperator> InverseByCost::factors(const Rest& rest, double most_operations) const {
+  const CrsMatrix& matrix = *assembled(rest.op);
+  const auto n_rows = static_cast<GlobalIndex>(matrix.getGlobalNumRows());
+  const auto n_entries = static_cast<double>(matrix.getGlobalNumEntries());
+  const std::array<double, 3> size{static_cast<double>(n_rows), n_entries, most_operations};
+  if (n_entries > most_entries || (costly_ != nullptr && costly_->count(size) > 0))
+    return Teuchos::null;
+  const std::vector<RowComponent> as_one(matrix.getNodeNumRows(), {0, n_rows});
+  const ComponentCholesky cholesky =
+      cheap_component_cholesky(assembled(rest.op), as_one, most_operations, name_);
+  if (any(cholesky.is_factored, map_->getComm()))
+    return cholesky.inverse;
+  if (costly_ != nullptr)
+    costly_->insert(size);
+  return Teuchos::null;
+}
+
+RCP<const LinearOperator> InverseByCost::cheap_factors(const Rest& rest) const {
+  const auto matrix = assembled(rest.op);
+  if (matrix.is_null())
+    return Teuchos::null;
+  const auto n_entries = static_cast<double>(matrix->getGlobalNumEntries());
+  return factors(rest, std::min(most_operations, most_operations_an_entry * n_entries));
+}
+
 void InverseByCost::take_large(const CrsMatrix& matrix, const NearNullSpace& space,
-                               const std::vector<bool>& rows, const std::string& name) {
+                               const std::vector<bool>& rows) {
   const Rest rest = rest_of(std::make_shared<const MatrixPart>(matrix, rows), space);
-  const auto& part = rest.part;
-  const auto n_rows = static_cast<GlobalIndex>(part->map()->getGlobalNumElements());
-  const auto n_entries = static_cast<double>(part->matrix()->getGlobalNumEntries());
-  const double most = space.empty() || rest.stiffness > great_stiffness
-                          ? most_operations
-                          : std::min(most_operations, most_operations_an_entry * n_entries);
-  const std::array<double, 3> size{static_cast<double>(n_rows), n_entries, most};
-  const bool may_factor = n_entries <= most_entries &&
-                          (space.empty() || rest.stiffness > least_stiffness_for_factors) &&
-                          (costly_ == nullptr || costly_->count(size) == 0);
-  if (may_factor) {
-    const std::vector<RowComponent> as_one(part->rows().size(), {0, n_rows});
-    const ComponentCholesky cholesky = cheap_component_cholesky(part->matrix(), as_one, most, name);
-    if (any(cholesky.is_factored, map_->getComm())) {
-      cheap_.push_back({part, cholesky.inverse});
-      return;
-    }
-    if (costly_ != nullptr)
-      costly_->insert(size);
-  }
-  rests_.push_back(rest);
+  RCP<const LinearOperator> inverse;
+  if (space.empty() || rest.stiffness > great_stiffness)
+    inverse = factors(rest, most_operations);
+  else if (rest.stiffness > least_stiffness_for_factors)
+    inverse = cheap_factors(rest);
+  if (inverse.is_null())
+    rests_.push_back(rest);
+  else
+    cheap_.push_back({rest.part, inverse});
 }
 
 RCP<const LinearOperator> InverseByCost::with(const InverseOfRest& inverse_of_rest) const {

@@ -41,19 +41,23 @@ class InverseByCost {
   /// Nothing is left.
   bool is_complete() const { return rests_.empty(); }
   const std::vector<Rest>& rests() const { return rests_; }
+  /// The exact inverse of such a rest, if its factors are cheap to apply, as those of sheets are;
+  /// else null. For preconditioners, where one application saves many steps of an outer iteration.
+  /// Collective.
+  RCP<const LinearOperator> cheap_factors(const Rest& rest) const;
   /// C^-1 with these inverses of what is left, on the rows of C. Applying it is collective.
   RCP<const LinearOperator> with(const InverseOfRest& inverse_of_rest) const;
 
  private:
-  void split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space,
-             const std::string& name);
+  void split(const RCP<const CrsMatrix>& matrix, const NearNullSpace& space);
   void take_small(const CrsMatrix& matrix, const NearNullSpace& space,
-                  const std::vector<RowComponent>& components, std::vector<bool> is_small,
-                  const std::string& name);
+                  const std::vector<RowComponent>& components, std::vector<bool> is_small);
   void take_large(const CrsMatrix& matrix, const NearNullSpace& space,
-                  const std::vector<bool>& rows, const std::string& name);
+                  const std::vector<bool>& rows);
+  RCP<const LinearOperator> factors(const Rest& rest, double most_operations) const;
 
   RCP<const Map> map_;
+  std::string name_;
   RCP<const LinearOperator> whole_;  ///< C^-1, if one method serves all of it
   std::vector<PartInverse> cheap_;
   std::vector<Rest> rests_;

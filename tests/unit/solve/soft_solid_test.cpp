@@ -164,6 +164,13 @@ TEST(SoftSolid, InverseByCostIteratesOnWhatIsLeft) {
   EXPECT_TRUE(InverseByCost(as_operator(stiff.c), stiff.space, "solid").is_complete());
   EXPECT_TRUE(InverseByCost(as_operator(soft.c), {}, "solid").is_complete());
 
+  // A preconditioner takes factors of a sheet at any stiffness, unless it is made of too many
+  // nodes.
+  const InverseByCost sheet(as_operator(soft.c), soft.space, "solid");
+  const auto factors = sheet.cheap_factors(sheet.rests()[0]);
+  ASSERT_FALSE(factors.is_null());
+  EXPECT_LT(error_of(*factors, *assembled(sheet.rests()[0].op)), 1e-11);
+
   const Lattice solid(160, 10);  // 51 200 rows and one
   const InverseByCost split(as_operator(solid.c), solid.space, "solid");
   ASSERT_EQ(split.rests().size(), 1u);

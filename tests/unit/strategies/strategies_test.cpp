@@ -275,8 +275,11 @@ TEST(Strategies, EverySolidInverseLeadsToTheSameSolution) {
       SCOPED_TRACE(strategy + ", " + type);
       ParameterList list;
       list.sublist("Solid Inverse").set("Type", type);
-      const Solved found = solve(*make(strategy, list), problem);
+      const auto made = make(strategy, list);
+      const Solved found = solve(*made, problem);
       EXPECT_LT(relative_difference(*expected.solution.solid, *found.solution.solid), 1e-7);
+      const bool is_exact = type == "Automatic" || type == "Exact" || type == "Direct";
+      EXPECT_EQ(made->inverses(), "A: MueLu; C: " + (is_exact ? "exact" : type));
     }
   }
 }
