@@ -42,6 +42,16 @@ def environment():
                 OMPI_MCA_mpi_yield_when_idle="1")
 
 
+def stages_of(summary, seconds="mean_seconds"):
+    """Seconds by stage of summary.json, under the names of the paper's step: one of kick, drift, kick has the solves within its kicks."""
+    result = {}
+    for entry in summary.get("stages", []):
+        name = entry["name"].replace("step / kick / forces", "step / F3 forces").replace("step / kick / ", "step / ")
+        if name != "step / kick":
+            result[name] = result.get(name, 0) + entry[seconds]
+    return result
+
+
 def on_ranks(n):
     """Words that stand before a command."""
     return ["mpirun", "--oversubscribe", "-n", str(n)] if n > 1 else []

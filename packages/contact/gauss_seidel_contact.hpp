@@ -20,7 +20,7 @@ namespace lockstep {
 using SolidPairs = std::set<std::pair<int, int>>;
 
 struct GaussSeidelOptions {
-  int sweeps = 200;         ///< sweeps of projected Gauss-Seidel over the final set of contacts
+  int sweeps = 200;         ///< sweeps of block Gauss-Seidel over the final set of contacts
   double tolerance = 1e-4;  ///< change of velocities over the largest one wanted [1]
   double thickness = 0.1;   ///< thickness of shells and of the skins of deformable bodies [h]
   std::map<std::string, double> thickness_of;              ///< instead, by name of the solid [m]
@@ -28,7 +28,7 @@ struct GaussSeidelOptions {
   std::optional<double> wall_friction, wall_restitution;   ///< default: those of the solid
 };
 
-/// Speculative contacts solved by projected Gauss-Seidel through M_S. A contact with gap g must
+/// Speculative contacts solved by block Gauss-Seidel through M_S. A contact with gap g must
 /// have v_n >= -g / dt after the resolution. In the position phase overlaps are pushed out, and
 /// whatever a vertex meets during dt is a contact; in the velocity phase only what is near by
 /// counts (all near vertices of a face or a ball, or a fast one would be set spinning by the one

@@ -11,7 +11,7 @@ ParameterList contact_parameters() {
   const GaussSeidelOptions usual;
   ParameterList list;
   declare_positive(list, "Maximum Iterations", usual.sweeps,
-                   "Sweeps of projected Gauss-Seidel over the final set of contacts, at most; an "
+                   "Sweeps of block Gauss-Seidel over the final set of contacts, at most; an "
                    "eighth of it while the set grows.");
   declare_tolerance(list, "Tolerance", usual.tolerance,
                     "Sweeps end when velocities at contacts change by less than this part of the "
@@ -71,7 +71,7 @@ template <int dim>
 void register_contact(ContactRegistry<dim>& contacts) {
   contacts.add("gauss seidel",
                "Collisions, resting contact and Coulomb friction between solids and with walls, by "
-               "projected Gauss-Seidel on velocities.",
+               "block Gauss-Seidel on velocities.",
                contact_parameters,
                [](const ParameterList& list, const ContactSetting<dim>& setting) {
                  GaussSeidelOptions options = options_from(list);

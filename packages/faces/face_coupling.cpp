@@ -5,9 +5,7 @@
 #include <Tpetra_Vector.hpp>
 #include <cmath>
 #include <map>
-#include <numeric>
 
-#include "linear/matrix_sum.hpp"
 #include "linear/overlap.hpp"
 #include "linear/triplet_matrix.hpp"
 
@@ -25,9 +23,7 @@ void FaceCoupling<dim>::take_volumes(const FluidDiscretization<dim>& fluid,
   coupling_transposed_ = Teuchos::null;
   added_mass_ = Teuchos::null;
   closed_area_.clear();
-  loads_at_rest_.clear();
-  load_corrections_.clear();
-  displaced_masses_.clear();
+  hydrostatics_.reset(surface);
   pushes_.clear();
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     closed_area_.push_back(closed_area(volumes_[f]));
@@ -212,85 +208,7 @@ void FaceCoupling<dim>::find_hydrostatic_loads(
   HydrostaticLoads<dim> loads(fluid, *surface_, density);
   add(loads);
   loads.sum(solids.comm());
-  solids_ = &solids;
-  loads_at_rest_ = loads.on_grid();
-  load_corrections_ = loads.corrections();
-  displaced_masses_ = loads.displaced_masses();
-}
-
-template <int dim>
-std::vector<Momentum<dim>> FaceCoupling<dim>::add_hydrostatic_force(double dt,
-                                                                    Vector& momentum) const {
-  if (load_corrections_.empty())
-    return std::vector<Momentum<dim>>(surface_->solids().size());
-  add_loads<dim>(load_corrections_, *solids_, *surface_, dt, momentum);
-  return impulses_on_prescribed<dim>(load_corrections_, *surface_, dt);
-}
-
-template <int dim>
-void FaceCoupling<dim>::add_impulse_at_rest(double dt, Vector& momentum) const {
-  if (!loads_at_rest_.empty())
-    add_loads<dim>(loads_at_rest_, *solids_, *surface_, dt, momentum);
-}
-
-namespace {
-
-/// The displaced mass of soft solids, on the nodes of their surfaces by area, but on dofs on which
-/// fluid is lumped. Local.
-template <int dim>
-std::vector<Triplet> added_mass_of_nodes(const std::vector<DisplacedMass<dim>>& displaced,
-                                         const SolidSystem<dim>& solids,
-                                         const SurfaceSnapshot<dim>& surface,
-                                         const RCP<const CrsMatrix>& lumped) {
-  Vector on_dofs(solids.map());
-  if (!lumped.is_null())
-    lumped->getLocalDiagCopy(on_dofs);
-  const auto has_fluid = on_dofs.getData();
-  std::vector<Triplet> triplets;
-  VelocityRow<dim> row;
-  for (const DisplacedMass<dim>& one : displaced) {
-    const SolidDescription& solid = surface.solids()[one.solid];
-    if (solid.rigid || solid.prescribed)
-      continue;
-    std::vector<double> areas;
-    for (int simplex = solid.simplex_begin; simplex < solid.simplex_end; ++simplex)
-      areas.push_back(area_vector<dim>(surface.corners(simplex)).norm());
-    const double whole = std::accumulate(areas.begin(), areas.end(), 0.0);
-    for (int simplex = solid.simplex_begin; simplex < solid.simplex_end; ++simplex) {
-      SurfacePoint<dim> corner;
-      corner.simplex = simplex;
-      for (int k = 0; k < dim; ++k) {
-        corner.barycentric.setZero();
-        corner.barycentric[k] = 1;
-        solids.velocity_row(corner, surface.corners(simplex)[k], row);
-        const double mass = one.mass * areas[simplex - solid.simplex_begin] / (dim * whole);
-        for (std::size_t i = 0; i < row.dofs.size(); ++i) {
-          const int local = solids.map()->getLocalElement(row.dofs[i]);
-          if (local >= 0 && has_fluid[local] == 0)
-            triplets.push_back(
-                {row.dofs[i], row.dofs[i], mass * row.coefficients[i].squaredNorm()});
-        }
-      }
-    }
-  }
-  return triplets;
-}
-
-}  // namespace
-
-template <int dim>
-RCP<const CrsMatrix> FaceCoupling<dim>::mass_with_fluid(const SolidSystem<dim>& solids) const {
-  if (displaced_masses_.empty())
-    return added_mass_;
-  std::vector<Triplet> triplets = added_mass_of_balls<dim>(displaced_masses_, solids, *surface_);
-  for (const Triplet& one :
-       added_mass_of_nodes<dim>(displaced_masses_, solids, *surface_, added_mass_))
-    triplets.push_back(one);
-  const RCP<const CrsMatrix> of_balls =
-      assemble_triplets(std::move(triplets), solids.map(), solids.map());
-  if (added_mass_.is_null())
-    return of_balls;
-  return sum_of({{added_mass_}, {of_balls}}, solids.map());
+  hydrostatics_.take(loads, solids);
 }
 
 template <int dim>

@@ -1,12 +1,11 @@
 #pragma once
 #include <vector>
 
-#include "faces/hydrostatic_load.hpp"
+#include "faces/hydrostatic_force.hpp"
 #include "faces/surface_shares.hpp"
 #include "interfaces/coupling.hpp"
 #include "interfaces/coupling_sides.hpp"
 #include "interfaces/gas.hpp"
-#include "interfaces/prescribed_flux.hpp"
 #include "interfaces/viscosity.hpp"
 
 namespace lockstep {
@@ -32,11 +31,13 @@ struct RowPush {
 template <int dim>
 class FaceCoupling : public Coupling<dim>,
                      public AuditedCoupling<dim>,
-                     public HydrostaticCoupling<dim>,
                      public GasCoupling<dim>,
-                     public ViscousCoupling<dim>,
-                     public SolidFluxes<dim> {
+                     public ViscousCoupling<dim> {
  public:
+  const AuditedCoupling<dim>* audit() const override { return this; }
+  const GasCoupling<dim>* gas() const override { return this; }
+  const HydrostaticCoupling<dim>* hydrostatics() const override { return &hydrostatics_; }
+  const ViscousCoupling<dim>* viscosity() const override { return this; }
   RCP<const CrsMatrix> coupling_transposed() const override { return coupling_transposed_; }
   RCP<const CrsMatrix> added_mass() const override { return added_mass_; }
   const std::vector<double>& fluid_mass() const override { return masses_; }
@@ -48,9 +49,6 @@ class FaceCoupling : public Coupling<dim>,
                                 int n_bubbles) const override;
   std::vector<double> effective_gas_rates(const SolidSystem<dim>& solids,
                                           int n_bubbles) const override;
-  std::vector<Momentum<dim>> add_hydrostatic_force(double dt, Vector& momentum) const override;
-  void add_impulse_at_rest(double dt, Vector& momentum) const override;
-  RCP<const CrsMatrix> mass_with_fluid(const SolidSystem<dim>& solids) const override;
 
  protected:
   /// Starts anew with the fluid's coupled volumes and with pushes of further rows, behind those of
@@ -110,10 +108,8 @@ class FaceCoupling : public Coupling<dim>,
                         std::vector<Triplet>& coupling) const;
 
   std::vector<double> closed_area_;
-  std::vector<RowPush> pushes_;               ///< in ascending order of rows
-  const SolidSystem<dim>* solids_ = nullptr;  ///< solids of the last `find_hydrostatic_loads`
-  std::vector<AxisLoad<dim>> loads_at_rest_, load_corrections_;
-  std::vector<DisplacedMass<dim>> displaced_masses_;
+  std::vector<RowPush> pushes_;  ///< in ascending order of rows
+  HydrostaticForce<dim> hydrostatics_;
 };
 
 /// rhs += weights^T momentum, one value a row; `import` brings the dofs of the weights. Collective.

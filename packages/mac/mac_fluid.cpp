@@ -388,11 +388,11 @@ void MacFluid<dim>::populate_uncovered(const MovingSurface<dim>& surface) {
   const GridState<dim>& state = flow_.geometry.state;
   if (state.surface) {
     const MacDomain<dim>& domain = flow_.domain;
-    populate_uncovered_faces<dim>(domain.grid, domain.halo, state, surface, flow_.nearby, invalid_,
-                                  flow_.prediction);
+    const UncoveredGrid<dim> uncovered{domain.grid, domain.halo,  state,
+                                       surface,     flow_.nearby, invalid_};
+    populate_uncovered_faces<dim>(uncovered, flow_.prediction);
     for (Scalar& scalar : flow_.scalars.all())
-      populate_uncovered_scalar(domain.grid, domain.halo, state, surface, flow_.nearby, invalid_,
-                                scalar.ambient, scalar.values);
+      populate_uncovered_scalar(uncovered, scalar.ambient, scalar.values);
     invalid_ = {};
   }
   if (flow_.has_drops())

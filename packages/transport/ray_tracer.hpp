@@ -45,6 +45,7 @@ class RayTracer {
   /// the first half cell of it has a share.
   void mix_inflow(SampleKind kind, Ray<dim>& ray, double depth = first_sample) const;
 
+  const SampleLattice<dim>& lattice() const { return lattice_; }
   bool flows_in(int axis, int side) const { return inflow_[axis][side]; }
   const std::array<const double*, dim>& velocity() const { return velocity_; }
   double cells_per_velocity() const { return cells_per_velocity_; }

@@ -18,17 +18,18 @@ constexpr double clearance_of_rays = 0.1;
 }  // namespace
 
 template <int dim>
-SurfaceTransport<dim>::SurfaceTransport(
-    const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice, const RayTracer<dim>& tracer,
-    const UsableSamples<dim>& usable, const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
-    double largest_displacement, int stencil_reach, double friction_speed)
-    : lattice_(lattice),
+SurfaceTransport<dim>::SurfaceTransport(const TiledGrid<dim>& grid, const RayTracer<dim>& tracer,
+                                        const UsableSamples<dim>& usable,
+                                        const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
+                                        const RayExtent& rays)
+    : lattice_(tracer.lattice()),
       tracer_(tracer),
       surface_(surface),
       surface_displacement_(largest_move(surface) / grid.spacing()),
       // The way of a ray, and the samples around it, must be clear of surfaces.
-      near_reach_(cells_reached(largest_displacement + stencil_reach + surface_displacement_)),
-      interpolation_(grid, lattice, usable, surface, friction_speed,
+      near_reach_(
+          cells_reached(rays.largest_displacement + rays.stencil_reach + surface_displacement_)),
+      interpolation_(grid, lattice_, usable, surface, rays.friction_speed,
                      kept.of(surface.before, grid, near_reach_ + 2)) {
   if (interpolation_.nearby().empty())
     return;

@@ -25,17 +25,21 @@ struct CarriedField {
       0.5;  ///< distance from an inflow side within which rays may end that it concerns [cells]
 };
 
+/// Reach of the rays of a step, and what slows them beside surfaces.
+struct RayExtent {
+  double largest_displacement = 0;  ///< along an axis [cells]
+  int stencil_reach = 1;      ///< distance of the farthest samples used at the end of a ray [cells]
+  double friction_speed = 0;  ///< decrease of the slip velocity by friction [m/s]
+};
+
 /// Transport of single samples near surfaces. Points and boxes are in lattice units.
 template <int dim>
 class SurfaceTransport {
  public:
-  /// `largest_displacement` of a ray along an axis, in cells, and `stencil_reach` of the farthest
-  /// samples used at its end; `friction_speed` [m/s]: decrease of the slip velocity by friction.
   /// References must outlive this object.
-  SurfaceTransport(const TiledGrid<dim>& grid, const SampleLattice<dim>& lattice,
-                   const RayTracer<dim>& tracer, const UsableSamples<dim>& usable,
-                   const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
-                   double largest_displacement, int stencil_reach, double friction_speed);
+  SurfaceTransport(const TiledGrid<dim>& grid, const RayTracer<dim>& tracer,
+                   const UsableSamples<dim>& usable, const MovingSurface<dim>& surface,
+                   KeptSurface<dim>& kept, const RayExtent& rays);
 
   /// True if a surface may come into the way of a ray from the sample, forth or back, or sweep over
   /// it.

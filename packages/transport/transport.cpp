@@ -76,10 +76,11 @@ Transport<dim>::Implementation::Implementation(const TransportSetting<dim>& sett
   mark_usable();
   frame.tracer = std::make_unique<RayTracer<dim>>(*frame.lattice, inflow, velocity,
                                                   setting.dt / setting.grid.spacing());
+  const double friction_speed =
+      resolved_reynolds_number * setting.kinematic_viscosity / setting.grid.spacing();
   frame.near_surface = std::make_unique<SurfaceTransport<dim>>(
-      samples, *frame.lattice, *frame.tracer, usable, setting.surface, setting.kept,
-      frame.largest_displacement, stencil_reach,
-      resolved_reynolds_number * setting.kinematic_viscosity / setting.grid.spacing());
+      samples, *frame.tracer, usable, setting.surface, setting.kept,
+      RayExtent{frame.largest_displacement, stencil_reach, friction_speed});
   if (reach <= TileBlock<dim>::longest_reach)
     frame.block =
         std::make_unique<TileBlock<dim>>(*frame.lattice, *frame.tracer, reach, stencil_reach);

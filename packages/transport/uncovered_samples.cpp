@@ -27,16 +27,15 @@ struct Waiting {
 template <int dim>
 class Fronts {
  public:
-  Fronts(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo, const GridState<dim>& after,
-         const MovingSurface<dim>& surface, const NearbySurface<dim>& nearby, SampleKind kind,
+  Fronts(const UncoveredGrid<dim>& uncovered, const NearbySurface<dim>& nearby, SampleKind kind,
          const std::vector<char>& invalid)
-      : grid_(grid),
-        halo_(halo),
-        state_(after),
-        surface_(surface),
+      : grid_(uncovered.grid),
+        halo_(uncovered.halo),
+        state_(uncovered.after),
+        surface_(uncovered.surface),
         nearby_(nearby),
         kind_(kind),
-        valid_(grid.n_stored_cells()) {
+        valid_(grid_.n_stored_cells()) {
     const auto look_at = [&](int id) {
       const bool has_no_value = !invalid.empty() && invalid[id];
       valid_[id] = in_fluid(id) && !has_no_value;
@@ -44,10 +43,10 @@ class Fronts {
         look_around(id);
     };
     if (kind == cell_centers)
-      grid.for_each_owned_cell(look_at);
+      grid_.for_each_owned_cell(look_at);
     else
-      grid.for_each_owned_face(kind, look_at);
-    halo.fill(valid_);
+      grid_.for_each_owned_face(kind, look_at);
+    halo_.fill(valid_);
   }
 
   UncoveredReport fill(CellField& values) {
@@ -197,19 +196,16 @@ class Fronts {
 }  // namespace
 
 template <int dim>
-UncoveredReport populate_uncovered_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
-                                         const GridState<dim>& after,
-                                         const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
-                                         const InvalidSamples<dim>& invalid, FaceField<dim>& u) {
+UncoveredReport populate_uncovered_faces(const UncoveredGrid<dim>& uncovered, FaceField<dim>& u) {
   UncoveredReport total;
-  const auto nearby = kept.of(after.surface, grid, sight);
+  const auto nearby = uncovered.kept.of(uncovered.after.surface, uncovered.grid, sight);
   for (int a = 0; a < dim; ++a) {
-    Fronts<dim> fronts(grid, halo, after, surface, *nearby, a, invalid.faces[a]);
+    Fronts<dim> fronts(uncovered, *nearby, a, uncovered.invalid.faces[a]);
     const UncoveredReport report = fronts.fill(u[a]);
     for (const auto& sample : fronts.left_over())
       u[a][sample.id] = fronts.surface_velocity(sample.id);
     if (report.n_left_over > 0)
-      halo.fill(u[a]);
+      uncovered.halo.fill(u[a]);
     total.n_invalid += report.n_invalid;
     total.n_left_over += report.n_left_over;
     total.n_fronts = std::max(total.n_fronts, report.n_fronts);
@@ -218,36 +214,21 @@ UncoveredReport populate_uncovered_faces(const TiledGrid<dim>& grid, const HaloE
 }
 
 template <int dim>
-UncoveredReport populate_uncovered_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
-                                          const GridState<dim>& after,
-                                          const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
-                                          const InvalidSamples<dim>& invalid, double ambient,
+UncoveredReport populate_uncovered_scalar(const UncoveredGrid<dim>& uncovered, double ambient,
                                           CellField& s) {
-  const auto nearby = kept.of(after.surface, grid, sight);
-  Fronts<dim> fronts(grid, halo, after, surface, *nearby, cell_centers, invalid.cells);
+  const auto nearby = uncovered.kept.of(uncovered.after.surface, uncovered.grid, sight);
+  Fronts<dim> fronts(uncovered, *nearby, cell_centers, uncovered.invalid.cells);
   const UncoveredReport report = fronts.fill(s);
   for (const auto& sample : fronts.left_over())
     s[sample.id] = ambient;
   if (report.n_left_over > 0)
-    halo.fill(s);
+    uncovered.halo.fill(s);
   return report;
 }
 
-template UncoveredReport populate_uncovered_faces<2>(const TiledGrid<2>&, const HaloExchange<2>&,
-                                                     const GridState<2>&, const MovingSurface<2>&,
-                                                     KeptSurface<2>&, const InvalidSamples<2>&,
-                                                     FaceField<2>&);
-template UncoveredReport populate_uncovered_faces<3>(const TiledGrid<3>&, const HaloExchange<3>&,
-                                                     const GridState<3>&, const MovingSurface<3>&,
-                                                     KeptSurface<3>&, const InvalidSamples<3>&,
-                                                     FaceField<3>&);
-template UncoveredReport populate_uncovered_scalar<2>(const TiledGrid<2>&, const HaloExchange<2>&,
-                                                      const GridState<2>&, const MovingSurface<2>&,
-                                                      KeptSurface<2>&, const InvalidSamples<2>&,
-                                                      double, CellField&);
-template UncoveredReport populate_uncovered_scalar<3>(const TiledGrid<3>&, const HaloExchange<3>&,
-                                                      const GridState<3>&, const MovingSurface<3>&,
-                                                      KeptSurface<3>&, const InvalidSamples<3>&,
-                                                      double, CellField&);
+template UncoveredReport populate_uncovered_faces<2>(const UncoveredGrid<2>&, FaceField<2>&);
+template UncoveredReport populate_uncovered_faces<3>(const UncoveredGrid<3>&, FaceField<3>&);
+template UncoveredReport populate_uncovered_scalar<2>(const UncoveredGrid<2>&, double, CellField&);
+template UncoveredReport populate_uncovered_scalar<3>(const UncoveredGrid<3>&, double, CellField&);
 
 }  // namespace lockstep

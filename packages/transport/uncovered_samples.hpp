@@ -13,22 +13,27 @@ struct UncoveredReport {
   int n_fronts = 0;  ///< sweeps until nothing changed
 };
 
+/// The grid at t^{n+1}, the surface that has moved over it, and the samples that it has left
+/// without a value. References must outlive the call.
+template <int dim>
+struct UncoveredGrid {
+  const TiledGrid<dim>& grid;
+  const HaloExchange<dim>& halo;  ///< width 1 or more
+  const GridState<dim>& after;
+  const MovingSurface<dim>& surface;
+  KeptSurface<dim>& kept;
+  const InvalidSamples<dim>& invalid;
+};
+
 /// Populates uncovered faces after the geometry of t^{n+1} is set: invalid velocities get the mean
 /// of their valid and visible neighbours along the axes, front after front (Guendelman et al.
 /// 2005). Faces left over, and faces inside solids, get the velocity of the nearest surface within
-/// three cells, or zero. `halo` has width 1 or more; ghost values of u are set on return.
-/// Collective.
+/// three cells, or zero. Ghost values of u are set on return. Collective.
 template <int dim>
-UncoveredReport populate_uncovered_faces(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
-                                         const GridState<dim>& after,
-                                         const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
-                                         const InvalidSamples<dim>& invalid, FaceField<dim>& u);
-/// Populates the invalid cells of a scalar; those left over get `ambient`.
+UncoveredReport populate_uncovered_faces(const UncoveredGrid<dim>& uncovered, FaceField<dim>& u);
+/// Populates the invalid cells of a scalar; those left over get `ambient`. Collective.
 template <int dim>
-UncoveredReport populate_uncovered_scalar(const TiledGrid<dim>& grid, const HaloExchange<dim>& halo,
-                                          const GridState<dim>& after,
-                                          const MovingSurface<dim>& surface, KeptSurface<dim>& kept,
-                                          const InvalidSamples<dim>& invalid, double ambient,
+UncoveredReport populate_uncovered_scalar(const UncoveredGrid<dim>& uncovered, double ambient,
                                           CellField& s);
 
 }  // namespace lockstep

@@ -5,6 +5,7 @@
 
 #include "coupling/impossible_flow.hpp"
 #include "coupling/null_space.hpp"
+#include "interfaces/coupling_sides.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/matrix_sum.hpp"
 #include "linear/null_space.hpp"
@@ -167,7 +168,7 @@ std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& co
     return "";
   PrescribedFluxes fluxes;
   fluxes.sides = fluid_.side_fluxes(time);
-  if (const auto* pushed = side_of<SolidFluxes<dim>>(coupling_))
+  if (const auto* pushed = coupling_.audit())
     fluxes.solids = pushed->solid_fluxes(solids_);
   if (with_solid && !constraints.offset().is_null())
     add_given_fluxes(constraints, fluxes.solids);

@@ -99,42 +99,6 @@ std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::snapshot(
 }
 
 template <int dim>
-std::shared_ptr<const SurfaceSnapshot<dim>> SolidSystem<dim>::with_images_of(
-    const SurfaceSnapshot<dim>& other,
-    const std::shared_ptr<const SurfaceSnapshot<dim>>& earlier) const {
-  if (earlier->images() == other.images())
-    return earlier;
-  SurfaceMesh<dim> mesh = earlier->mesh();  // first images, then further ones
-  mesh.vertices.resize(solids_.back().vertex_end);
-  mesh.simplices.resize(solids_.back().simplex_end);
-  for (std::size_t i = 0; i < solids_.size(); ++i)
-    for (int v = solids_[i].vertex_begin; v < solids_[i].vertex_end; ++v)
-      mesh.vertices[v] += other.images().shifts[i] - earlier->images().shifts[i];
-  return std::make_shared<const SurfaceSnapshot<dim>>(std::move(mesh), solids_, other.order(),
-                                                      other.images());
-}
-
-template <int dim>
-bool SolidSystem<dim>::is_where(const SurfaceSnapshot<dim>& snapshot) const {
-  if (!repeated_.empty()) {
-    SurfaceMesh<dim> shown = surface();
-    for (std::size_t i = 0; i < solids_.size(); ++i)
-      for (int v = solids_[i].vertex_begin; v < solids_[i].vertex_end; ++v)
-        shown.vertices[v] += snapshot.images().shifts[i];
-    return std::equal(shown.vertices.begin(), shown.vertices.end(),
-                      snapshot.mesh().vertices.begin());
-  }
-  auto there = snapshot.mesh().vertices.begin();
-  for (const auto& solid_model : models_) {
-    const auto& here = solid_model->surface().vertices;
-    if (!std::equal(here.begin(), here.end(), there))
-      return false;
-    there += static_cast<std::ptrdiff_t>(here.size());
-  }
-  return true;
-}
-
-template <int dim>
 std::vector<SolidState<dim>> SolidSystem<dim>::states() const {
   std::vector<SolidState<dim>> all;
   for (const auto& solid_model : models_) {
@@ -142,25 +106,6 @@ std::vector<SolidState<dim>> SolidSystem<dim>::states() const {
       all.push_back(state);
   }
   return all;
-}
-
-template <int dim>
-double SolidSystem<dim>::largest_surface_speed() const {
-  double largest = 0;
-  for (const auto& solid_model : models_) {
-    const std::vector<SolidState<dim>> states = solid_model->states();
-    const SurfaceMesh<dim>& surface = solid_model->surface();
-    for (std::size_t s = 0; s < states.size(); ++s) {
-      const SolidDescription& solid = solid_model->solids()[s];
-      for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
-        const Point<dim> arm = surface.vertices[v] - states[s].center_of_mass;
-        const Point<dim> velocity =
-            states[s].velocity + rotate<dim>(states[s].angular_velocity, arm);
-        largest = std::max(largest, velocity.template lpNorm<1>());
-      }
-    }
-  }
-  return largest;
 }
 
 template <int dim>
@@ -259,26 +204,6 @@ RCP<Vector> SolidSystem<dim>::implicit_impulse(double dt, const Vector& velocity
 }
 
 template <int dim>
-AngularVector<dim> SolidSystem<dim>::inner_angular_impulse(double dt) const {
-  AngularVector<dim> total = AngularVector<dim>::Zero();
-  for (int m = 0; m < n_models(); ++m) {
-    if (const auto* audited = model(m).audit())
-      total += audited->inner_angular_impulse(dt);
-  }
-  return total;
-}
-
-template <int dim>
-Momentum<dim> SolidSystem<dim>::external_impulse(double time, double dt) const {
-  Momentum<dim> total;
-  for (int m = 0; m < n_models(); ++m) {
-    if (const auto* audited = model(m).audit())
-      total += audited->external_impulse(time, dt);
-  }
-  return total;
-}
-
-template <int dim>
 bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
   bool any = false;
   for (int m = 0; m < n_models(); ++m) {
@@ -289,53 +214,6 @@ bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
   }
   ++linearisation_number_;
   return any;
-}
-
-template <int dim>
-bool SolidSystem<dim>::has_implicit_forces() const {
-  bool any = false;
-  for (int m = 0; m < n_models(); ++m)
-    any = any || nonlinear(m);
-  return any;
-}
-
-template <int dim>
-bool SolidSystem<dim>::is_audited() const {
-  bool all = true;
-  for (int m = 0; m < n_models(); ++m)
-    all = all && model(m).audit();
-  return all;
-}
-
-template <int dim>
-RCP<const Vector> SolidSystem<dim>::linearisation() const {
-  RCP<Vector> all;
-  for (int m = 0; m < n_models(); ++m) {
-    const auto* forces = nonlinear(m);
-    const RCP<const Vector> velocity = forces ? forces->linearisation() : Teuchos::null;
-    if (velocity.is_null())
-      continue;
-    if (all.is_null())
-      all = make_vector(map_);
-    part(*all, m)->update(1, *velocity, 0);
-  }
-  return all;
-}
-
-template <int dim>
-std::vector<ComputedEnergy> SolidSystem<dim>::nonlinear_energies(double dt,
-                                                                 const Vector& velocity) const {
-  std::vector<ComputedEnergy> all;
-  for (int m = 0; m < n_models(); ++m) {
-    const auto* forces = nonlinear(m);
-    const std::size_t end = all.size() + model(m).solids().size();
-    if (forces) {
-      for (const ComputedEnergy& energy : forces->nonlinear_energies(dt, *part(velocity, m)))
-        all.push_back(energy);
-    }
-    all.resize(end);
-  }
-  return all;
 }
 
 template <int dim>
@@ -366,34 +244,6 @@ Momentum<dim> SolidSystem<dim>::momentum(const Vector& generalized_momentum) con
   for (const auto& momentum : momentum_of_each(generalized_momentum))
     total += momentum;
   return total;
-}
-
-template <int dim>
-StepBound SolidSystem<dim>::largest_stable_step() const {
-  StepBound bound;
-  for (const auto& solid_model : models_)
-    bound = shorter(bound, solid_model->largest_stable_step());
-  return bound;
-}
-
-template <int dim>
-GlobalIndex SolidSystem<dim>::n_clamped_elements() const {
-  GlobalIndex n = 0;
-  for (int m = 0; m < n_models(); ++m) {
-    if (const auto* output = model(m).output())
-      n += output->n_clamped_elements();
-  }
-  return n;
-}
-
-template <int dim>
-double SolidSystem<dim>::stretch_beyond_limit() const {
-  double worst = 0;
-  for (int m = 0; m < n_models(); ++m) {
-    if (const auto* output = model(m).output())
-      worst = std::max(worst, output->stretch_beyond_limit());
-  }
-  return worst;
 }
 
 /// Nodes that are attached stay so; where they are, and what is locked, changes.

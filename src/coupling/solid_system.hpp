@@ -13,7 +13,8 @@
 
 namespace lockstep {
 
-/// The stack of all solids: one surface, one space of generalized velocities. The models' dofs
+/// The stack of all solids: one surface, one space of generalized velocities. What it has together
+/// is in solid_totals.hpp. The models' dofs
 /// follow one another; `reduction` says which of them are unknowns of a solve (locked dofs and
 /// those of nodes that rigid solids carry are not). Vectors are those of all dofs, but for what is
 /// said to be reduced. Every rank owns at least one row, if need be an inert padding dof (unit
@@ -53,16 +54,8 @@ class SolidSystem {
   /// With `before`, a snapshot of earlier positions, all images that either needs are shown.
   std::shared_ptr<const SurfaceSnapshot<dim>> snapshot(
       const SurfaceSnapshot<dim>* before = nullptr) const;
-  /// Returns an earlier snapshot with the images of another: itself if it has them.
-  std::shared_ptr<const SurfaceSnapshot<dim>> with_images_of(
-      const SurfaceSnapshot<dim>& other,
-      const std::shared_ptr<const SurfaceSnapshot<dim>>& earlier) const;
-  /// True if the surfaces are where this snapshot of them has them, to the last bit.
-  bool is_where(const SurfaceSnapshot<dim>& snapshot) const;
   const std::vector<SolidDescription>& solids() const { return solids_; }
   std::vector<SolidState<dim>> states() const;
-  /// Largest 1-norm of the velocity of a surface vertex, each solid taken as rigid [m/s]. Local.
-  double largest_surface_speed() const;
 
   /// Rows of a surface point of the last snapshot, with ids of `map`. Of a repeated solid they are
   /// those of the image nearest to x. Local.
@@ -119,6 +112,9 @@ class SolidSystem {
   ConstraintModel* joints() { return joints_.get(); }  ///< null: there are none
   const ConstraintModel* joints() const { return joints_.get(); }
 
+  /// Returns a model's part of a stacked vector, as a view. Local.
+  RCP<const Vector> part(const Vector& stacked, int m) const;
+  RCP<Vector> part(Vector& stacked, int m) const;
   /// Stacked vectors. Collective.
   RCP<Vector> velocity() const;  ///< carried nodes move as their solids
   void set_velocity(const Vector& velocity);
@@ -127,8 +123,6 @@ class SolidSystem {
   /// dt D V: what the implicit forces give in a step. Its sum is zero, but not its torque: forces
   /// linearised at x act at x + dt V. Collective.
   RCP<Vector> implicit_impulse(double dt, const Vector& velocity) const;
-  AngularVector<dim> inner_angular_impulse(double dt) const;  ///< sum over all models [kg m^2/s]
-  Momentum<dim> external_impulse(double time, double dt) const;
   /// Linearises all models' implicit forces; false if there are none. Collective.
   bool linearise(double dt, const Vector& velocity);
   /// Another number after anything that changes the implicit forces: a step that begins or
@@ -136,22 +130,12 @@ class SolidSystem {
   unsigned linearisation_number() const { return linearisation_number_; }
   /// The model's side of nonlinear forces, or null.
   NonlinearSolids<dim>* nonlinear(int m) const { return models_[m]->nonlinear(); }
-  /// Nonlinear implicit forces: true if any model has them; the linearisation of all models; the
-  /// energies of each solid (see NonlinearSolids).
-  bool has_implicit_forces() const;
-  RCP<const Vector> linearisation() const;
-  std::vector<ComputedEnergy> nonlinear_energies(double dt, const Vector& velocity) const;
   void limit_motion(double dt, Vector& velocity);
   void move(const Vector& velocity, double time, double dt);
   /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.
   /// Collective.
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const;
   Momentum<dim> momentum(const Vector& generalized_momentum) const;
-  StepBound largest_stable_step() const;
-  GlobalIndex n_clamped_elements() const;  ///< sum over all models, see SolidOutput
-  double stretch_beyond_limit() const;     ///< in the worst place of all models, see SolidOutput
-  /// True if all models are AuditedSolids.
-  bool is_audited() const;
 
  private:
   void find_reduction();
@@ -163,8 +147,6 @@ class SolidSystem {
     Point<dim> x;
   };
   ModelPoint in_model(SurfacePoint<dim> point, const Point<dim>& x) const;
-  RCP<const Vector> part(const Vector& stacked, int m) const;
-  RCP<Vector> part(Vector& stacked, int m) const;
   std::vector<StackedPart> parts(double dt) const;
   std::vector<int> padding_rows() const;
 

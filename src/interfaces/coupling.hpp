@@ -7,12 +7,20 @@ namespace lockstep {
 
 template <int dim>
 class SolidSystem;
+template <int dim>
+class AuditedCoupling;
+template <int dim>
+class GasCoupling;
+template <int dim>
+class HydrostaticCoupling;
+template <int dim>
+class ViscousCoupling;
 
 /// Exchanges momentum between fluid and solids: from the fluid's coupled control volumes and the
 /// solids' velocity rows it makes B^T, the added mass and momentum, and hands velocities back. Its
 /// `open_fraction` decides which control volumes it takes. Geometry is frozen between two
-/// `assemble`. Audits and outputs find more in interfaces/coupling_sides.hpp, the viscous solve in
-/// viscosity.hpp.
+/// `assemble`. Its sides, null where it does without, are in interfaces/coupling_sides.hpp, gas.hpp
+/// and viscosity.hpp; they are the same in all of a run and on all ranks.
 template <int dim>
 class Coupling : public PlugIn, public OpenFractionRule<dim> {
  public:
@@ -42,6 +50,12 @@ class Coupling : public PlugIn, public OpenFractionRule<dim> {
 
   /// M_F per coupled volume, after volume subtraction and balancing [kg]. Local.
   virtual const std::vector<double>& fluid_mass() const = 0;
+
+  virtual const AuditedCoupling<dim>* audit() const { return nullptr; }
+  virtual const GasCoupling<dim>* gas() const { return nullptr; }  ///< null: a fluid traps none
+  /// Null: the grid is trusted with the volume of every body.
+  virtual const HydrostaticCoupling<dim>* hydrostatics() const { return nullptr; }
+  virtual const ViscousCoupling<dim>* viscosity() const { return nullptr; }  ///< null: inviscid
 };
 
 }  // namespace lockstep

@@ -1,9 +1,10 @@
 #pragma once
 #include "interfaces/coupling.hpp"
+#include "interfaces/prescribed_flux.hpp"
 
 namespace lockstep {
 
-// Side interfaces of couplings (`side_of`).
+// Side interfaces of couplings: `Coupling` hands them out.
 
 /// The impulses that go through the coupled volumes, for the ledger and for the forces that are
 /// reported. Without it a run has no `momentum_error` with prescribed or soft solids, and the
@@ -19,6 +20,9 @@ class AuditedCoupling {
   virtual std::vector<Momentum<dim>> prescribed_impulses(
       const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
       const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const = 0;
+  /// Returns what each prescribed solid of the system pushes into row 1, at the present time, face
+  /// by face, so that a run can say whose motion closed fluid has no room for. Local.
+  virtual std::vector<PrescribedFlux> solid_fluxes(const SolidSystem<dim>& solids) const = 0;
   /// Angular impulse about the origin that a solve makes because soft solids take the impulses of
   /// coupled volumes at their nodes, with diagonally lumped masses, and the fluid gives them at the
   /// volumes' centres: taken minus given [kg m^2/s]. Zero (to round-off) where W reproduces rigid
@@ -46,8 +50,9 @@ class HydrostaticCoupling {
   virtual void add_impulse_at_rest(double dt, Vector& momentum) const = 0;
   /// The mass that solids have with the fluid on them, less M_S: the fluid lumped on them, and for
   /// rigid ones the added mass of a ball of the volume that they displace [kg]. An estimate, for
-  /// contact. Null: none. Collective.
-  virtual RCP<const CrsMatrix> mass_with_fluid(const SolidSystem<dim>& solids) const = 0;
+  /// contact. `lumped`: the coupling's added mass dM, or null. Null: none. Collective.
+  virtual RCP<const CrsMatrix> mass_with_fluid(const SolidSystem<dim>& solids,
+                                               const RCP<const CrsMatrix>& lumped) const = 0;
 };
 
 }  // namespace lockstep

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/solid_totals.hpp"
 #include "interfaces/liquid.hpp"
 #include "interfaces/periodic_fluid.hpp"
 
@@ -130,7 +131,7 @@ void RunWarnings<dim>::after_step(long long step, const StepReport<dim>& report,
   // Up to here the drag of a disc two cells above a wall is right to 0.1 %.
   constexpr double most = 10;
   if (of_viscous_step_ || report.viscous_number <= most * (1 + 1e-9) ||
-      components.solids->largest_surface_speed() == 0)
+      largest_surface_speed(*components.solids) == 0)
     return;
   of_viscous_step_ = true;
   log.warning(

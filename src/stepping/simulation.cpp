@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "base/signals.hpp"
+#include "coupling/solid_totals.hpp"
 #include "interfaces/limited_torques.hpp"
 #include "interfaces/line_tensions.hpp"
 #include "interfaces/liquid.hpp"
@@ -162,10 +163,10 @@ StepBound Simulation<dim>::next_step() {
   const TimeOptions& time = scene_options_.time;
   // A resting fluid still has to resolve moving solids.
   const double suggested =
-      components_.fluid->suggested_step(time.cfl, components_.solids->largest_surface_speed());
+      components_.fluid->suggested_step(time.cfl, largest_surface_speed(*components_.solids));
   const StepBound wanted = wanted_step(time, suggested);
   StepBound step = shorter(wanted, components_.fluid->largest_stable_step());
-  step = shorter(step, components_.solids->largest_stable_step());
+  step = shorter(step, largest_stable_step(*components_.solids));
   warnings_.before_step(step_ + 1, step, wanted, log_);
   // A bit of difference between ranks would let one of them take a step more.
   step.dt = min_all(comm_, step.dt);

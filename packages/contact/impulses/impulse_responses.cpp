@@ -48,7 +48,7 @@ template <int dim>
 void ImpulseSolver<dim>::find_velocity() {
   std::vector<double> of_active(active_.size(), 0);
   for (const Row& row : rows_) {
-    const Point<dim> pushed = impulse(row);
+    const Point<dim> pushed = row.frame * row.impulse;
     for (int k = row.begin; k < row.end; ++k)
       of_active[jacobian_[k].id] += jacobian_[k].coefficient.dot(pushed);
   }
@@ -67,7 +67,7 @@ void ImpulseSolver<dim>::find_velocity() {
 template <int dim>
 bool ImpulseSolver<dim>::slides(const Row& row) const {
   constexpr double edge = 1 - 1e-9;
-  return row.tangent_impulse.norm() >= edge * row.friction * row.normal_impulse;
+  return row.impulse.template tail<dim - 1>().norm() >= edge * row.law.friction * row.impulse[0];
 }
 
 template <int dim>
@@ -89,11 +89,11 @@ template <int dim>
 template <typename Function>
 void ImpulseSolver<dim>::for_each_held(const Function& f) const {
   for (const Row& row : rows_) {
-    if (row.normal_impulse <= 0)
+    if (!row.pushes())
       continue;
-    f(row, row.contact.normal, row.target, row.normal_impulse, row.normal_response);
-    for (int k = 0; k < dim - 1 && !slides(row); ++k)
-      f(row, row.tangents.col(k), 0, row.tangent_impulse[k], row.tangent_response);
+    f(row, row.contact.normal, row.target, row.impulse[0], row.normal_response);
+    for (int k = 1; k < dim && !slides(row); ++k)
+      f(row, row.frame.col(k), 0, row.impulse[k], row.tangent_response);
   }
 }
 
@@ -132,8 +132,8 @@ std::vector<PrescribedPush<dim>> ImpulseSolver<dim>::held_pushes() const {
     add_pushes(row, direction, number++, pushes);
   });
   for (const Row& row : rows_) {
-    if (row.normal_impulse > 0 && slides(row))
-      add_pushes(row, row.tangents * row.tangent_impulse, PrescribedPush<dim>::whole, pushes);
+    if (row.pushes() && slides(row))
+      add_pushes(row, row.of_friction(), PrescribedPush<dim>::whole, pushes);
   }
   return pushes;
 }
@@ -142,7 +142,7 @@ template <int dim>
 std::vector<PrescribedPush<dim>> ImpulseSolver<dim>::pushes() const {
   std::vector<PrescribedPush<dim>> pushes;
   for (const Row& row : rows_)
-    add_pushes(row, impulse(row), PrescribedPush<dim>::whole, pushes);
+    add_pushes(row, row.frame * row.impulse, PrescribedPush<dim>::whole, pushes);
   return pushes;
 }
 
@@ -150,9 +150,9 @@ template <int dim>
 typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::sliding_impulse(Terms& on_given) const {
   HeldRow all;
   for (const Row& row : rows_) {
-    if (row.normal_impulse <= 0 || !slides(row))
+    if (!row.pushes() || !slides(row))
       continue;
-    for (const auto& term : impulse_on_both(row, row.tangents * row.tangent_impulse))
+    for (const auto& term : impulse_on_both(row, row.of_friction()))
       all.weights.push_back(term);
   }
   take_out_given(all);

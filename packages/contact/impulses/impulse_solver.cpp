@@ -1,6 +1,5 @@
 #include "contact/impulses/impulse_solver.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -13,16 +12,18 @@ namespace {
 /// is the round-off of joints that let nothing move along it.
 constexpr double unmovable = 1e-10;
 
+/// Columns: the normal and two tangents, or one.
 template <int dim>
-Eigen::Matrix<double, dim, dim - 1> tangents_of(const Point<dim>& normal) {
-  Eigen::Matrix<double, dim, dim - 1> tangents;
+Eigen::Matrix<double, dim, dim> frame_of(const Point<dim>& normal) {
+  Eigen::Matrix<double, dim, dim> frame;
+  frame.col(0) = normal;
   if constexpr (dim == 2) {
-    tangents.col(0) = Point<2>(-normal.y(), normal.x());
+    frame.col(1) = Point<2>(-normal.y(), normal.x());
   } else {
-    tangents.col(0) = normal.unitOrthogonal();
-    tangents.col(1) = normal.cross(tangents.col(0));
+    frame.col(1) = normal.unitOrthogonal();
+    frame.col(2) = normal.cross(frame.col(1));
   }
-  return tangents;
+  return frame;
 }
 }  // namespace
 
@@ -60,7 +61,7 @@ void ImpulseSolver<dim>::add_entries(Row& row, const SurfacePoint<dim>& point, c
       jacobian_.push_back({dof, coefficient});
       continue;
     }
-    if (row.friction == 0 && row.contact.normal.dot(coefficient) == 0)
+    if (row.law.friction == 0 && row.contact.normal.dot(coefficient) == 0)
       continue;  // without friction the tangential part has no effect
     if (mobility_.is_held(dof))
       row.prescribed += velocity_[dof] * coefficient;
@@ -103,12 +104,14 @@ void ImpulseSolver<dim>::add_response(Row& row) {
   row.normal_response = row.contact.normal.dot(compliance * row.contact.normal);
   if (row.normal_response < unmovable * of_parts)
     row.normal_response = 0;
-  row.tangents = tangents_of<dim>(row.contact.normal);
-  auto tangent = (row.tangents.transpose() * compliance * row.tangents).eval();
+  row.law.mobility = row.frame.transpose() * compliance * row.frame;
+  row.law.mobility(0, 0) = row.normal_response;
   // Directions that locks hold get no impulse to speak of.
-  tangent.diagonal().array() += 1e-12 * compliance.trace();
-  row.tangent_response = tangent.norm();
-  row.tangent_inverse = tangent.inverse();
+  row.law.mobility.template bottomRightCorner<dim - 1, dim - 1>().diagonal().array() +=
+      1e-12 * compliance.trace();
+  row.tangent_response = row.law.mobility.template bottomRightCorner<dim - 1, dim - 1>().norm();
+  if (row.law.friction > 0 && row.normal_response > 0)
+    row.law.inverse = row.law.mobility.inverse();
 }
 
 template <int dim>
@@ -117,8 +120,8 @@ typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& 
   const auto& solids = shapes_.solids();
   Row row;
   row.contact = contact;
-  row.friction = friction;
-  row.tangent_impulse.setZero();
+  row.law.friction = friction;
+  row.frame = frame_of<dim>(contact.normal);
   row.solid_prescribed = solids[contact.solid].prescribed;
   row.other_prescribed = contact.other < 0 || solids[contact.other].prescribed;
   row.begin = static_cast<int>(jacobian_.size());
@@ -234,38 +237,24 @@ void ImpulseSolver<dim>::push(const Row& row, const Point<dim>& impulse) {
   }
 }
 
+/// Solves for one contact while the others stay. Returns by how much its velocity changes [m/s].
 template <int dim>
-double ImpulseSolver<dim>::relax_normal(Row& row) {
-  const Point<dim>& normal = row.contact.normal;
-  const double wanted = row.target - normal.dot(relative_velocity(row));
-  const double total = std::max(0.0, row.normal_impulse + wanted / row.normal_response);
-  const double change = total - row.normal_impulse;
-  row.normal_impulse = total;
-  if (change != 0)
-    push(row, change * normal);
-  return std::abs(change) * row.normal_response;
-}
-
-template <int dim>
-double ImpulseSolver<dim>::relax_friction(Row& row) {
-  if (row.friction == 0)
+double ImpulseSolver<dim>::relax(Row& row) {
+  const auto& mobility = row.law.mobility;
+  Point<dim> velocity = row.frame.transpose() * relative_velocity(row);
+  velocity[0] -= row.target;
+  Point<dim> next = Point<dim>::Zero();
+  if (row.law.friction > 0)
+    next = coulomb_impulse<dim>(row.law, velocity - mobility * row.impulse, row.impulse);
+  else
+    next[0] = std::max(0.0, row.impulse[0] - velocity[0] / row.normal_response);
+  const Point<dim> change = next - row.impulse;
+  row.impulse = next;
+  if (change.isZero(0))
     return 0;
-  const auto slip = (row.tangents.transpose() * relative_velocity(row)).eval();
-  const double largest = row.friction * row.normal_impulse;
-  auto total = (row.tangent_impulse - row.tangent_inverse * slip).eval();
-  if (total.norm() > largest) {
-    // Sliding: a scalar step, whose fixed point is friction exactly against the slip.
-    total = row.tangent_impulse - slip / row.tangent_response;
-    const double size = total.norm();
-    if (size > largest)
-      total *= largest / size;
-  }
-  const auto change = (total - row.tangent_impulse).eval();
-  row.tangent_impulse = total;
-  if (change.norm() == 0)
-    return 0;
-  push(row, row.tangents * change);
-  return change.norm() * row.tangent_response;
+  push(row, row.frame * change);
+  const Point<dim> felt = mobility * change;
+  return row.law.friction > 0 ? felt.norm() : std::abs(felt[0]);
 }
 
 template <int dim>
@@ -274,19 +263,12 @@ int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance, double neg
   int sweep = 0;
   for (double change = 1e300; sweep < maximum_sweeps && !(change <= tolerance); ++sweep) {
     change = limits_.relax(velocity_by_id(), negligible);
-    for (Row& row : rows_) {
-      change = std::max(change, relax_normal(row));
-      change = std::max(change, relax_friction(row));
-    }
+    for (Row& row : rows_)
+      change = std::max(change, relax(row));
   }
   if (responds() && n_contacts() > 0)
     find_velocity();
   return sweep;
-}
-
-template <int dim>
-Point<dim> ImpulseSolver<dim>::impulse(const Row& row) const {
-  return row.normal_impulse * row.contact.normal + row.tangents * row.tangent_impulse;
 }
 
 template <int dim>
@@ -315,7 +297,7 @@ template <int dim>
 std::vector<double> ImpulseSolver<dim>::generalized_impulse() const {
   std::vector<double> total(velocity_.size());
   for (const Row& row : rows_)
-    for (const auto& [dof, pushed] : impulse_on_both(row, impulse(row)))
+    for (const auto& [dof, pushed] : impulse_on_both(row, row.frame * row.impulse))
       total[dof] += pushed;
   std::vector<double> of_limits(responds() ? active_.size() : total.size(), 0);
   limits_.add_to(of_limits);
@@ -329,9 +311,9 @@ Momentum<dim> ImpulseSolver<dim>::external_impulse() const {
   Momentum<dim> total;
   for (const Row& row : rows_) {
     if (row.solid_prescribed)
-      total.add(row.contact.place(), -impulse(row));
+      total.add(row.contact.place(), -row.frame * row.impulse);
     if (row.other_prescribed)
-      total.add(row.contact.other_place(), impulse(row));
+      total.add(row.contact.other_place(), row.frame * row.impulse);
   }
   return total;
 }

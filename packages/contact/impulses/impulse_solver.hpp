@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "contact/bodies/contact_side.hpp"
+#include "contact/impulses/coulomb.hpp"
 #include "contact/impulses/limit_impulses.hpp"
 #include "contact/impulses/mobility.hpp"
 #include "contact/search/contact_search.hpp"
@@ -9,9 +10,9 @@
 
 namespace lockstep {
 
-/// Projected Gauss-Seidel for contact impulses: normal ones that only push, so that the normal
-/// velocity reaches a target, and Coulomb friction inside its disc. Every impulse acts at one point
-/// on both solids with opposite signs. Local, the same on all ranks.
+/// Block Gauss-Seidel for contact impulses: normal ones that only push, so that the normal velocity
+/// reaches a target, and Coulomb friction, each contact exactly while the others stay. Every
+/// impulse acts at one point on both solids with opposite signs. Local, the same on all ranks.
 template <int dim>
 class ImpulseSolver {
  public:
@@ -65,20 +66,23 @@ class ImpulseSolver {
     Point<dim> coefficient;
   };
   using Compliance = Eigen::Matrix<double, dim, dim>;
-  using Tangents = Eigen::Matrix<double, dim, dim - 1>;
   struct Row {
     Contact<dim> contact;
     int begin = 0, end = 0;                      ///< in `jacobian_`
     int response_begin = 0, response_end = 0;    ///< in `response_`: M_S^-1 J^T, without a response
     Point<dim> prescribed = Point<dim>::Zero();  ///< velocity that no impulse changes
     Point<dim> of_given = Point<dim>::Zero();    ///< its part of prescribed solids and walls
-    double target = 0, friction = 0;
+    double target = 0;
     double normal_response = 0, tangent_response = 0;  ///< velocity per impulse [1/kg]
     bool solid_prescribed = false, other_prescribed = false;
-    Tangents tangents;
-    Eigen::Matrix<double, dim - 1, dim - 1> tangent_inverse;
-    double normal_impulse = 0;
-    Eigen::Matrix<double, dim - 1, 1> tangent_impulse;
+    Compliance frame = Compliance::Zero();    ///< columns: the normal, then the tangents
+    CoulombContact<dim> law;                  ///< in the frame
+    Point<dim> impulse = Point<dim>::Zero();  ///< in the frame [kg m/s]
+    bool pushes() const { return impulse[0] > 0; }
+    /// The impulse of friction.
+    Point<dim> of_friction() const {
+      return frame.template rightCols<dim - 1>() * impulse.template tail<dim - 1>();
+    }
   };
 
   /// With a response ids are numbers of active dofs, and `active_` their velocities; else they are
@@ -102,8 +106,7 @@ class ImpulseSolver {
   void find_response(const Row& row, Compliance& compliance, double& of_parts) const;
   Point<dim> relative_velocity(const Row& row) const;
   void push(const Row& row, const Point<dim>& impulse);
-  double relax_normal(Row& row);
-  double relax_friction(Row& row);
+  double relax(Row& row);
   bool slides(const Row& row) const;
   /// Calls f(row, direction, target, impulse, response) for what a coupled solve is to hold.
   template <typename Function>
@@ -114,7 +117,6 @@ class ImpulseSolver {
   ContactSide<dim> solid_of(const Row& row) const;
   ContactSide<dim> other_of(const Row& row) const;
   Terms impulse_on_both(const Row& row, const Point<dim>& impulse) const;
-  Point<dim> impulse(const Row& row) const;
 
   const SolidSystem<dim>& system_;
   const ContactShapes<dim>& shapes_;

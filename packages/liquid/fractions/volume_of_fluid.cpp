@@ -191,8 +191,8 @@ bool VolumeOfFluid<dim>::move_solids(const InterfaceStep<dim>& step,
     fractions_.defect[cell] += liquid[cell] * (part_before - fractions_.open_part(cell));
   });
   const CellField kept = liquid;
-  populate_uncovered_scalar(domain_.grid, domain_.halo, solids_.state, step.surface, step.kept,
-                            invalid, 0, liquid);
+  populate_uncovered_scalar<dim>(
+      {domain_.grid, domain_.halo, solids_.state, step.surface, step.kept, invalid}, 0, liquid);
   domain_.grid.for_each_owned_cell([&](int cell) {
     fractions_.defect[cell] += (kept[cell] - liquid[cell]) * fractions_.open_part(cell);
   });

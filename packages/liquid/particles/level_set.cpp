@@ -131,8 +131,9 @@ double LevelSet<dim>::advect(const InterfaceStep<dim>& step) {
   const bool had_solids = solids_.state.surface != nullptr;
   const auto replaced = find_solids(step.surface.after);
   if (had_solids || solids_.state.surface)
-    populate_uncovered_scalar(grid, domain_.halo, solids_.state, step.surface, step.kept,
-                              transport.invalid(), grid.spacing(), phi_);
+    populate_uncovered_scalar<dim>(
+        {grid, domain_.halo, solids_.state, step.surface, step.kept, transport.invalid()},
+        grid.spacing(), phi_);
   domain_.halo.fill(phi_);
   if (moved_ >= negligible_motion)
     restore(step, tiles);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "coupling/solid_system.hpp"
+#include "coupling/solid_totals.hpp"
 #include "interfaces/contact.hpp"
 #include "interfaces/coupling_sides.hpp"
 #include "interfaces/fluid_sides.hpp"
@@ -43,12 +44,12 @@ struct ComponentSides {
   explicit ComponentSides(const Components<dim>& components)
       : viscous_fluid(components.fluid->viscosity()),
         audited_fluid(components.fluid->audit()),
-        viscous_coupling(side_of<ViscousCoupling<dim>>(*components.coupling)),
-        audited_coupling(side_of<AuditedCoupling<dim>>(*components.coupling)),
-        hydrostatic_coupling(side_of<HydrostaticCoupling<dim>>(*components.coupling)),
+        viscous_coupling(components.coupling->viscosity()),
+        audited_coupling(components.coupling->audit()),
+        hydrostatic_coupling(components.coupling->hydrostatics()),
         gas_fluid(components.fluid->gas()),
-        gas_coupling(side_of<GasCoupling<dim>>(*components.coupling)),
-        audited(audited_fluid && audited_coupling && components.solids->is_audited()) {}
+        gas_coupling(components.coupling->gas()),
+        audited(audited_fluid && audited_coupling && is_audited(*components.solids)) {}
 
   ViscousFluid<dim>* viscous_fluid;
   const AuditedFluid<dim>* audited_fluid;
@@ -56,7 +57,7 @@ struct ComponentSides {
   const AuditedCoupling<dim>* audited_coupling;
   const HydrostaticCoupling<dim>* hydrostatic_coupling;
   GasFluid<dim>* gas_fluid;
-  GasCoupling<dim>* gas_coupling;
+  const GasCoupling<dim>* gas_coupling;
   bool audited;  ///< all that the momentum ledger asks
 };
 

@@ -4,6 +4,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "base/errors.hpp"
+#include "coupling/solid_totals.hpp"
 #include "linear/null_space.hpp"
 
 namespace lockstep {
@@ -86,7 +87,7 @@ bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
                                 CoupledSolution& solution, Vector& momentum) {
   constexpr int most_searches = 3;
   auto& solids = *components_.solids;
-  if (!solids.has_unknowns() || !solids.has_implicit_forces())
+  if (!solids.has_unknowns() || !has_implicit_forces(solids))
     return false;
   const Vector& velocity = *solution.velocity;
   if (n_solves < options_.newton_iterations) {
@@ -114,7 +115,7 @@ ContactReport<dim> CoupledSolve<dim>::contact_before_solve(const StepContext<dim
   auto& solids = *components_.solids;
   auto& contact = *components_.contact;
   const double dt = context.dt;
-  if (solids.has_implicit_forces()) {
+  if (has_implicit_forces(solids)) {
     const auto inverse = implicit_response<dim>(solids, dt);
     const RCP<const Vector> predicted =
         solids.velocity_of(momentum, dt, context.constraints, *inverse);

@@ -1,4 +1,5 @@
 #include "stepping/step/fluid_transport.hpp"
+#include "coupling/solid_totals.hpp"
 
 namespace lockstep {
 
@@ -17,14 +18,14 @@ void FluidTransport<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim
 /// Nothing moves them now, nor has them ready to move.
 template <int dim>
 bool FluidTransport<dim>::solids_rest() const {
-  return !components_.solids->has_unknowns() && components_.solids->largest_surface_speed() == 0;
+  return !components_.solids->has_unknowns() && largest_surface_speed(*components_.solids) == 0;
 }
 
 template <int dim>
 bool FluidTransport<dim>::make_room(const StepTime& step) {
   const auto& solids = *components_.solids;
   const bool has_moved = components_.fluid->begin_step(
-      step.begin, step.dt, [&solids] { return solids.largest_surface_speed(); });
+      step.begin, step.dt, [&solids] { return largest_surface_speed(solids); });
   if (has_moved)
     freeze();
   return has_moved;
@@ -67,10 +68,10 @@ void FluidTransport<dim>::carry(const StepTime& step) {
   const auto& solids = *components_.solids;
   auto before = system_.surface();
   const bool stays =
-      frozen_at_rest_ && solids_rest() && (solids.empty() || solids.is_where(*before));
+      frozen_at_rest_ && solids_rest() && (solids.empty() || is_where(solids, *before));
   const auto after = stays || solids.empty() ? before : solids.snapshot(before.get());
   if (after != before)
-    before = solids.with_images_of(*after, before);
+    before = with_images_of(solids, *after, before);
   const MovingSurface<dim> moving{before, after, [&solids](const SurfacePoint<dim>& point) {
                                     return solids.effective_velocity(point, point.position);
                                   }};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "coupling/nonlinear_bodies.hpp"
+#include "coupling/solid_totals.hpp"
 #include "solve/soft/exact_inverse.hpp"
 
 namespace lockstep {
@@ -54,7 +55,7 @@ class Descent {
     apply(block, change_, product);
     whole_slopes_ = bodies.dot(gradient, change_);
     whole_curvatures_ = bodies.dot(product, change_);
-    start_ = solids.nonlinear_energies(dt, from);
+    start_ = nonlinear_energies(solids, dt, from);
   }
 
   RCP<Vector> at(double part) const {
@@ -65,7 +66,7 @@ class Descent {
   /// Excess of the potential over the model, relative to the change of the model [1]: that of the
   /// worst solid.
   double excess(double part) const {
-    const std::vector<ComputedEnergy> end = solids_.nonlinear_energies(dt_, *at(part));
+    const std::vector<ComputedEnergy> end = nonlinear_energies(solids_, dt_, *at(part));
     constexpr double unseen = 1e-12;  // strain by round-off in free rigid motion, relative [1]
     const auto change = [part](double slope, double curvature) {
       return std::abs(part * slope + 0.5 * part * part * curvature);
@@ -94,7 +95,7 @@ class Descent {
 
 template <int dim>
 RCP<Vector> linearisation_of(const SolidSystem<dim>& solids) {
-  const RCP<const Vector> known = solids.linearisation();
+  const RCP<const Vector> known = linearisation(solids);
   return known.is_null() ? make_vector(solids.map()) : rcp(new Vector(*known, Teuchos::Copy));
 }
 
@@ -197,13 +198,13 @@ void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before
     velocity.update(1, before, 0);
     return;
   }
-  const std::vector<ComputedEnergy> start = solids.nonlinear_energies(dt, before);
+  const std::vector<ComputedEnergy> start = nonlinear_energies(solids, dt, before);
   std::vector<double> parts(cost.size(), 1);
   for (int k = 0; k <= most_halvings; ++k) {
     Vector changed(change, Teuchos::Copy);
     bodies.scale(parts, changed);
     velocity.update(1, before, 1, changed, 0);
-    const std::vector<ComputedEnergy> end = solids.nonlinear_energies(dt, velocity);
+    const std::vector<ComputedEnergy> end = nonlinear_energies(solids, dt, velocity);
     bool all = true;
     for (std::size_t s = 0; s < parts.size(); ++s) {
       const double rise = 0.5 * parts[s] * parts[s] * cost[s] + end[s].value - start[s].value;

@@ -3,6 +3,7 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
+#include "coupling/solid_totals.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/overlap.hpp"
 
@@ -102,9 +103,9 @@ template <int dim>
 void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& found) {
   auto& solids = *components_.solids;
   const double dt = context.step.dt;
-  const bool is_implicit = solids.has_unknowns() && solids.has_implicit_forces();
+  const bool is_implicit = solids.has_unknowns() && has_implicit_forces(solids);
   solids.limit_motion(dt, *found.velocity);
-  found.path.stretch_beyond_limit = solids.stretch_beyond_limit();
+  found.path.stretch_beyond_limit = stretch_beyond_limit(solids);
   // Shells push the fluid of closed regions, bodies only take back what straight steps add.
   const auto sweep_shells = [&](Vector& velocity) {
     sweep_volumes(rates_of_kind(found.swept, solids, false), solids, dt, velocity);

@@ -3,6 +3,7 @@
 #include <Tpetra_Vector.hpp>
 
 #include "coupling/nonlinear_bodies.hpp"
+#include "coupling/solid_totals.hpp"
 #include "interfaces/liquid.hpp"
 
 namespace lockstep {
@@ -39,7 +40,7 @@ RCP<Vector> SolidForces<dim>::midpoint_correction(double dt) const {
   const auto& solids = *components_.solids;
   const RCP<Vector> correction = make_vector(solids.map());
   solids.add_midpoint_correction(dt, *correction);
-  if (solids.has_implicit_forces()) {
+  if (has_implicit_forces(solids)) {
     const NonlinearBodies<dim> bodies(solids);
     bodies.scale(resolved_parts(solids, bodies, components_.coupling->added_mass(), dt),
                  *correction);
@@ -69,7 +70,7 @@ SolidMomentum<dim> SolidForces<dim>::momentum(const StepContext<dim>& context,
   if (context.moves_positions)
     return result;
   if (has_unknowns) {
-    result.forces = solids.external_impulse(context.begin, context.dt);
+    result.forces = external_impulse(solids, context.begin, context.dt);
     if (!context.joints.given.is_null())
       result.joints = solids.momentum(*context.joints.given);
   }

@@ -174,7 +174,7 @@ MotionWithContacts<dim> CoupledSolve<dim>::converge_with_contacts(const StepCont
 template <int dim>
 RCP<Vector> CoupledSolve<dim>::impulse_at_rest(double dt) const {
   const auto impulse = make_vector(components_.solids->map());
-  if (const auto* coupling = side_of<HydrostaticCoupling<dim>>(*components_.coupling))
+  if (const auto* coupling = components_.coupling->hydrostatics())
     coupling->add_impulse_at_rest(dt, *impulse);
   return impulse;
 }
@@ -182,9 +182,10 @@ RCP<Vector> CoupledSolve<dim>::impulse_at_rest(double dt) const {
 /// The mass that R has beside M_S: of the fluid on solids, as a matrix on the stack.
 template <int dim>
 RCP<const CrsMatrix> CoupledSolve<dim>::mass_of_fluid_near() const {
-  if (const auto* coupling = side_of<HydrostaticCoupling<dim>>(*components_.coupling))
-    return coupling->mass_with_fluid(*components_.solids);
-  return components_.coupling->added_mass();
+  const RCP<const CrsMatrix> lumped = components_.coupling->added_mass();
+  if (const auto* coupling = components_.coupling->hydrostatics())
+    return coupling->mass_with_fluid(*components_.solids, lumped);
+  return lumped;
 }
 
 template <int dim>

@@ -1,4 +1,5 @@
 #include "stepping/step/step_audit.hpp"
+#include "coupling/solid_totals.hpp"
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
@@ -167,7 +168,7 @@ void StepAudit<dim>::book_solids(const StepContext<dim>& context, const StageRes
   report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lumping_torque_error});
   const RCP<const Vector> implicit = solids.implicit_impulse(context.dt, *whole.solid);
   report.linearisation_impulse =
-      solids.momentum(*implicit).angular + solids.inner_angular_impulse(context.dt);
+      solids.momentum(*implicit).angular + inner_angular_impulse(solids, context.dt);
   report.ledger.add("linearised forces", {Point<dim>::Zero(), report.linearisation_impulse});
   const RCP<Vector> gained = make_vector(solids.map());
   apply(*solids.mass(), *whole.solid, *gained);
@@ -225,7 +226,7 @@ void StepAudit<dim>::close(const StepContext<dim>& context, const CoupledSolutio
     apply(*solids.mass(), *solution.velocity, *after);
     report.solid_momentum = solids.momentum(*after);
   }
-  report.n_clamped_elements = solids.n_clamped_elements();
+  report.n_clamped_elements = n_clamped_elements(solids);
   report.ledger.close(report.fluid_momentum + report.solid_momentum);
   // Not that of the ledger: a restarted run finds it anew, and must not differ in its last digit.
   last_momentum_ = total_momentum(context.step.begin, of_fluid);

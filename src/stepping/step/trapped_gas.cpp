@@ -31,7 +31,7 @@ template <int dim>
 TrappedGas<dim>::TrappedGas(const Components<dim>& components)
     : components_(components),
       fluid_(components.fluid->gas()),
-      coupling_(side_of<GasCoupling<dim>>(*components.coupling)) {
+      coupling_(components.coupling->gas()) {
   check_input(!fluid_ || coupling_,
               "The coupling \"{}\" knows no gas that pushes on solids; take another one, or leave "
               "\"Trapped Air\" at \"massless\".",

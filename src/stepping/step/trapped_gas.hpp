@@ -36,8 +36,8 @@ class TrappedGas {
   GasProblem problem(double dt, double step_dt) const;
 
   const Components<dim>& components_;
-  GasFluid<dim>* fluid_;        ///< null: it knows no gas
-  GasCoupling<dim>* coupling_;  ///< null: it knows no gas
+  GasFluid<dim>* fluid_;              ///< null: it knows no gas
+  const GasCoupling<dim>* coupling_;  ///< null: it knows no gas
 };
 
 }  // namespace lockstep

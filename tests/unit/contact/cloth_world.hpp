@@ -102,9 +102,11 @@ int n_crossings(const SurfaceMesh<dim>& mesh);
 
 template <>
 inline int n_crossings<2>(const SurfaceMesh<2>& mesh) {
+  // Round-off on a straight side is no crossing.
   const auto side = [&mesh](int a, int b, int c) {
     const Point<2> u = mesh.vertices[b] - mesh.vertices[a], w = mesh.vertices[c] - mesh.vertices[a];
-    return u.x() * w.y() - u.y() * w.x();
+    const double value = u.x() * w.y() - u.y() * w.x();
+    return std::abs(value) > 1e-13 * u.norm() * w.norm() ? value : 0;
   };
   int n = 0;
   for (std::size_t i = 0; i < mesh.simplices.size(); ++i) {

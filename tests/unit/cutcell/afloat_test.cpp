@@ -80,7 +80,7 @@ struct Afloat {
     coupling->coupling_transposed()->apply(*pressure, *impulse, Teuchos::NO_TRANS, -1, 1);
     coupling->add_lumped_momentum(fluid->coupled_velocity(), *impulse);
     on_grid = dense(*impulse).head(3);
-    side_of<HydrostaticCoupling<2>>(*coupling)->add_hydrostatic_force(1, *impulse);
+    coupling->hydrostatics()->add_hydrostatic_force(1, *impulse);
     return dense(*impulse).head(3);
   }
 

@@ -197,7 +197,7 @@ TEST(Flux, OfAFluidAtRestLiftsTheBodyExactly) {
   const auto pressure =
       test::pressure_vector<3>(*c.fluid, [&](const Point<3>& x) { return 0.1 * gravity.dot(x); });
   const auto impulse = make_vector(c.solids->map());
-  c.coupling.add_hydrostatic_force(0.1, *impulse);
+  c.coupling.hydrostatics()->add_hydrostatic_force(0.1, *impulse);
   c.coupling.coupling_transposed()->apply(*pressure, *impulse, Teuchos::NO_TRANS, -1, 1);
   const Eigen::VectorXd lift = dense(*impulse);
   const double volume = 4. / 3 * M_PI * std::pow(0.24, 3);
@@ -218,7 +218,7 @@ TEST(Flux, OfAFluidAtRestLiftsThePartInTheTank) {
     const auto pressure =
         test::pressure_vector<3>(*c.fluid, [&](const Point<3>& x) { return 0.1 * gravity.dot(x); });
     const auto impulse = make_vector(c.solids->map());
-    c.coupling.add_hydrostatic_force(0.1, *impulse);
+    c.coupling.hydrostatics()->add_hydrostatic_force(0.1, *impulse);
     c.coupling.coupling_transposed()->apply(*pressure, *impulse, Teuchos::NO_TRANS, -1, 1);
     EXPECT_NEAR(dense(*impulse)[2], 0.1 * 2 * 0.3 * 0.25 * 0.25, 1e-14) << beyond;
   }

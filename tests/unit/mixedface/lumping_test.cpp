@@ -113,7 +113,7 @@ TEST(HydrostaticForce, CountsWhatIsInTheDomain) {
     body.center = (lower + upper) / 2;
     CoupledCase<2> c(tank, fake_solids<2>({{body}}));
     const auto impulse = make_vector(c.solids.map());
-    c.coupling.add_hydrostatic_force(1, *impulse);
+    c.coupling.hydrostatics()->add_hydrostatic_force(1, *impulse);
     return dense(*impulse)[1];
   };
   EXPECT_EQ(lift_of({0.3, 1.2}, {0.7, 1.5}), 0);    // above the open top
@@ -157,7 +157,7 @@ TEST(HydrostaticForce, OfAHeldBodyIsReportedExactly) {
       CoupledCase<2> c(tank, fake_solids<2>({{body}}));
       const auto properties = volume_properties<2>(body.surface);
       const auto none = make_vector(c.solids.map());
-      const Momentum<2> impulse = c.coupling.add_hydrostatic_force(dt, *none).at(0);
+      const Momentum<2> impulse = c.coupling.hydrostatics()->add_hydrostatic_force(dt, *none).at(0);
       EXPECT_EQ(none->normInf(), 0);
       const std::vector<double> rest(c.fluid.coupled_volumes().size(), 0);
       const Momentum<2> given =
@@ -186,13 +186,13 @@ void expect_exact_lift(double radius, int n_cells) {
     body.center = properties.centroid;
     CoupledCase<dim> c(tank, fake_solids<dim>({{body}}));
     const auto impulse = make_vector(c.solids.map());
-    c.coupling.add_hydrostatic_force(dt, *impulse);
+    c.coupling.hydrostatics()->add_hydrostatic_force(dt, *impulse);
     const auto on_grid = make_vector(c.solids.map()), expected = make_vector(c.solids.map());
     if (!c.coupling.coupling_transposed().is_null())
       c.coupling.coupling_transposed()->apply(*pressure_at_rest(c, tank, dt), *on_grid,
                                               Teuchos::NO_TRANS, -1, 1);
     c.coupling.add_lumped_momentum(falling(c, tank, dt), *on_grid);
-    c.coupling.add_impulse_at_rest(dt, *expected);  // for contact
+    c.coupling.hydrostatics()->add_impulse_at_rest(dt, *expected);  // for contact
     expected->update(-1, *on_grid, 1);
     EXPECT_LT(expected->normInf(), 1e-13) << k;
     EXPECT_GT(impulse->normInf(), 1e-6) << k;  // there was something to correct
@@ -219,7 +219,7 @@ TEST(HydrostaticForce, DoesNotActWhereAnEndIsHidden) {
   body.center = {0.47, 0.275};
   CoupledCase<2> c(tank, fake_solids<2>({{body}}));
   const auto impulse = make_vector(c.solids.map()), on_grid = make_vector(c.solids.map());
-  c.coupling.add_hydrostatic_force(1, *impulse);
+  c.coupling.hydrostatics()->add_hydrostatic_force(1, *impulse);
   EXPECT_EQ(dense(*impulse)[1], 0);
   c.coupling.coupling_transposed()->apply(*pressure_at_rest(c, tank, 1), *on_grid,
                                           Teuchos::NO_TRANS, -1, 1);

@@ -54,8 +54,8 @@ UncoveredReport step(FullTank<dim>& tank, AdvectionScheme scheme, double dt, Cel
   s.swap(next);
   GridState<dim> after = tank.state;
   after.surface = tank.surface.after;
-  return populate_uncovered_scalar<dim>(tank.grid, tank.halo, after, tank.surface, tank.kept,
-                                        transport.invalid(), 0, s);
+  return populate_uncovered_scalar<dim>(
+      {tank.grid, tank.halo, after, tank.surface, tank.kept, transport.invalid()}, 0, s);
 }
 
 /// Rough flow that crosses every surface: the solids do not impose themselves on it.
@@ -195,8 +195,8 @@ void expect_stream_undisturbed(double cfl) {
   state_after.surface = after;
   for (int a = 0; a < dim; ++a)
     std::fill(state_after.faces[a].begin(), state_after.faces[a].end(), FaceState::free);
-  const auto report = populate_uncovered_faces<dim>(tank.grid, tank.halo, state_after, tank.surface,
-                                                    tank.kept, transport.invalid(), u);
+  const auto report = populate_uncovered_faces<dim>(
+      {tank.grid, tank.halo, state_after, tank.surface, tank.kept, transport.invalid()}, u);
   EXPECT_GT(report.n_invalid, 10);
   for (int a = 0; a < dim; ++a)
     tank.grid.for_each_owned_face(a, [&](int c) {
@@ -286,8 +286,8 @@ TEST(TransportNearSurfaces, LeftOverFacesTakeTheSurfaceVelocity) {
   transport.advect_faces(AdvectionScheme::semi_lagrangian, u, moved);
   GridState<2> after = tank.state;
   after.surface = tank.surface.after;
-  const auto report = populate_uncovered_faces<2>(tank.grid, tank.halo, after, tank.surface,
-                                                  tank.kept, transport.invalid(), moved);
+  const auto report = populate_uncovered_faces<2>(
+      {tank.grid, tank.halo, after, tank.surface, tank.kept, transport.invalid()}, moved);
   EXPECT_EQ(report.n_left_over, 1);
   EXPECT_EQ(report.n_invalid, 2);
   tank.grid.for_each_owned_face(1, [&](int c) {
