@@ -178,6 +178,17 @@ std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& co
 }
 
 template <int dim>
+std::vector<RCP<const Vector>> CoupledSystem<dim>::locked_directions() const {
+  std::vector<RCP<const Vector>> directions;
+  for (std::size_t k = 0; locks_solids() && k < blocks_.pressure_null_space.size(); ++k) {
+    const RCP<Vector> direction = make_vector(solids_.map());
+    coupling_transposed_->apply(*blocks_.pressure_null_space.vector(k), *direction);
+    directions.push_back(direction);
+  }
+  return directions;
+}
+
+template <int dim>
 RCP<Vector> CoupledSystem<dim>::reactions(double dt, const Reduction& constraints,
                                           const Vector& momentum,
                                           const BlockVector& solution) const {

@@ -60,6 +60,9 @@ class CoupledSystem {
   double lumped_fluid_energy(const std::vector<double>& coupled_velocity) const;
 
   const NullSpace& null_space() const { return blocks_.null_space; }
+  /// P^T B^T n of all null vectors n of A, if `locks_solids`: impulses to which solids do not
+  /// yield, of a pressure that is the same all over closed fluid [m^(dim-1)]. Collective.
+  std::vector<RCP<const Vector>> locked_directions() const;
   /// True if solids change the volume of closed fluid, which holds them fast along that motion.
   bool locks_solids() const {
     return blocks_.null_space.size() != blocks_.pressure_null_space.size();

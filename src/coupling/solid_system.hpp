@@ -14,11 +14,11 @@
 namespace lockstep {
 
 /// The stack of all solids: one surface, one space of generalized velocities. What it has together
-/// is in solid_totals.hpp. The models' dofs
-/// follow one another; `reduction` says which of them are unknowns of a solve (locked dofs and
-/// those of nodes that rigid solids carry are not). Vectors are those of all dofs, but for what is
-/// said to be reduced. Every rank owns at least one row, if need be an inert padding dof (unit
-/// mass, never coupled), because empty ranks break Thyra's block vectors.
+/// is in solid_totals.hpp. The models' dofs follow one another; `reduction` says which of them are
+/// unknowns of a solve (locked dofs and those of nodes that rigid solids carry are not). Vectors
+/// are those of all dofs, but for what is said to be reduced. Every rank owns at least one row, if
+/// need be an inert padding dof (unit mass, never coupled), because empty ranks break Thyra's block
+/// vectors.
 template <int dim>
 class SolidSystem {
  public:

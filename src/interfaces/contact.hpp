@@ -72,7 +72,7 @@ using WallVelocity = std::function<Point<dim>(int axis, int end, double time)>;
 /// The two places of a step at which contacts are resolved.
 enum class ContactPhase {
   position,  ///< S1: V^{n+1/2} moves the positions; existing overlap is pushed out
-  velocity   ///< S2: V_S* before the coupled solve; only approach is stopped
+  velocity   ///< S2: the velocities of t^{n+1}; only approach is stopped
 };
 
 /// Collisions, resting contact and friction across all solids and with the walls of the domain.

@@ -41,10 +41,6 @@ class CoupledSolve {
   /// linearisation. Collective.
   CoupledSolution converge(const StepContext<dim>& context, const RCP<Vector>& momentum,
                            const BlockVector* nearby = nullptr);
-  /// True if contacts, and limits of joints, are part of the coupled solve: where no fluid is
-  /// closed in. Closed fluid locks a body that touches a wall, since rows of B end there; then
-  /// contact acts on V_S* alone. The same on all ranks.
-  bool holds_contacts() const;
   /// True if these contacts leave surfaces that may still pass through one another: soft ones.
   bool leaves_impacts() const;
   /// Returns the contacts of the velocities that solids with `momentum` have if the fluid gives
@@ -87,7 +83,6 @@ class CoupledSolve {
  private:
   bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution,
                Vector& momentum);
-  ContactReport<dim> contact_before_solve(const StepContext<dim>& context, Vector& momentum);
   RCP<Vector> impulse_at_rest(double dt) const;
   RCP<const CrsMatrix> mass_of_fluid_near() const;
   void solve_held(const StepContext<dim>& context, const Vector& momentum,

@@ -10,6 +10,7 @@
 #include "linear/triplet_matrix.hpp"
 #include "solve/soft/exact_inverse.hpp"
 #include "stepping/step/coupled_solve.hpp"
+#include "stepping/step/locked_response.hpp"
 #include "stepping/step/secant_response.hpp"
 
 namespace lockstep {
@@ -145,11 +146,6 @@ double largest(const std::vector<double>& values) {
 }  // namespace
 
 template <int dim>
-bool CoupledSolve<dim>::holds_contacts() const {
-  return components_.contact && components_.solids->has_unknowns() && !system_.locks_solids();
-}
-
-template <int dim>
 bool CoupledSolve<dim>::leaves_impacts() const {
   const auto& solids = components_.solids->solids();
   return std::any_of(solids.begin(), solids.end(), [](const SolidDescription& solid) {
@@ -201,6 +197,7 @@ ContactResponse CoupledSolve<dim>::contact_response(double dt) const {
               ? as_operator(
                     block_diagonal_inverse(assembled(block), largest_block(solids), name).inverse)
               : exact_inverse(block, name);
+      response = locked_response(response, system_.locked_directions());
     }
     return response;
   };
@@ -384,8 +381,6 @@ RCP<Vector> CoupledSolve<dim>::reactions_to_contacts(const StepContext<dim>& con
   return reactions;
 }
 
-template bool CoupledSolve<2>::holds_contacts() const;
-template bool CoupledSolve<3>::holds_contacts() const;
 template bool CoupledSolve<2>::leaves_impacts() const;
 template bool CoupledSolve<3>::leaves_impacts() const;
 template MotionWithContacts<2> CoupledSolve<2>::converge_with_contacts(const StepContext<2>&,
