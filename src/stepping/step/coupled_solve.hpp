@@ -44,7 +44,8 @@ class CoupledSolve {
   /// True if these contacts leave surfaces that may still pass through one another: soft ones.
   bool leaves_impacts() const;
   /// Returns the contacts of the velocities that solids with `momentum` have if the fluid gives
-  /// them what it gives at rest, in the response of `contact_response`. Collective.
+  /// them what it gives at rest, or gave soft ones in the last step, in the response of
+  /// `contact_response`. Collective.
   ContactReport<dim> expected_contacts(const StepContext<dim>& context, const Vector& momentum,
                                        const ContactResponse& response);
   /// The response of solids to impulses, with the fluid on them. Collective.
@@ -84,6 +85,8 @@ class CoupledSolve {
   bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution,
                Vector& momentum);
   RCP<Vector> impulse_at_rest(double dt) const;
+  RCP<Vector> expected_impulse(const StepContext<dim>& context, const Vector& momentum,
+                               const Vector& velocity) const;
   RCP<const CrsMatrix> mass_of_fluid_near() const;
   void solve_held(const StepContext<dim>& context, const Vector& momentum,
                   const BlockVector* nearby, MotionWithContacts<dim>& motion);

@@ -235,6 +235,32 @@ void CoupledSolve<dim>::soften(double dt, std::vector<HeldRow>& rows) const {
         std::max(rows[k].response, stiffness_factor * round_off / options_.tolerance * own[k]);
 }
 
+/// Impulse that changes the present velocities of the solids in a solve without contact: `momentum`
+/// and that of the fluid, less what they have. The fluid's is for rigid solids that of fluid at
+/// rest, known from the first step on. On the nodes of soft ones that is right in sum alone, so
+/// that they have the pressure of the last step: what lies still takes one solve a phase in place
+/// of eight.
+template <int dim>
+RCP<Vector> CoupledSolve<dim>::expected_impulse(const StepContext<dim>& context,
+                                                const Vector& momentum,
+                                                const Vector& velocity) const {
+  const auto& solids = *components_.solids;
+  const bool by_rest = !leaves_impacts() || context.step.last_dt == 0;
+  RCP<Vector> given;
+  if (by_rest) {
+    given = rcp(new Vector(momentum, Teuchos::Copy));
+    given->update(1, *impulse_at_rest(context.dt), 1);
+  } else {
+    given = system_.lumped_momentum(momentum);
+    components_.coupling->coupling_transposed()->apply(
+        *last_pressure(*components_.fluid, context.step, context.dt), *given, Teuchos::NO_TRANS, -1,
+        1);
+  }
+  const RCP<const CrsMatrix> lumped = by_rest ? Teuchos::null : components_.coupling->added_mass();
+  apply(*solids.full_block(lumped, context.dt), velocity, *given, -1, 1);
+  return given;
+}
+
 template <int dim>
 ContactReport<dim> CoupledSolve<dim>::expected_contacts(const StepContext<dim>& context,
                                                         const Vector& momentum,
@@ -246,9 +272,9 @@ ContactReport<dim> CoupledSolve<dim>::expected_contacts(const StepContext<dim>& 
   if (!components_.contact->may_act(solids, phase_of(context), context.step.dt,
                                     *solids.velocity_of(given)))
     return {};
-  apply(*solids.full_block(Teuchos::null, context.dt), velocity, given, -1, 1);
-  context.constraints.restrict(given);
-  apply(*response(), given, velocity, 1, 1);
+  const RCP<Vector> change = expected_impulse(context, momentum, velocity);
+  context.constraints.restrict(*change);
+  apply(*response(), *change, velocity, 1, 1);
   context.constraints.expand(velocity);
   return decide(context, response, velocity);
 }
@@ -390,7 +416,11 @@ template MotionWithContacts<3> CoupledSolve<3>::converge_with_contacts(const Ste
                                                                        const RCP<Vector>&,
                                                                        const BlockVector*);
 template RCP<Vector> CoupledSolve<2>::impulse_at_rest(double) const;
+template RCP<Vector> CoupledSolve<2>::expected_impulse(const StepContext<2>&, const Vector&,
+                                                       const Vector&) const;
 template RCP<Vector> CoupledSolve<3>::impulse_at_rest(double) const;
+template RCP<Vector> CoupledSolve<3>::expected_impulse(const StepContext<3>&, const Vector&,
+                                                       const Vector&) const;
 template ContactResponse CoupledSolve<2>::contact_response(double) const;
 template ContactResponse CoupledSolve<3>::contact_response(double) const;
 template ContactReport<2> CoupledSolve<2>::expected_contacts(const StepContext<2>&, const Vector&,
