@@ -105,6 +105,42 @@ bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
   return true;
 }
 
+/// Contact acts on V_S* = M_S^-1 momentum; its impulses go into the momentum. With implicit inner
+/// forces V_S* = (M_S - dt D)^-1 momentum, so that contact holds what it would have to at the end
+/// of the step, and forces are linearised there.
+template <int dim>
+ContactReport<dim> CoupledSolve<dim>::contact_before_solve(const StepContext<dim>& context,
+                                                           Vector& momentum) {
+  ScopedStage stage(timers_, "contact");
+  auto& solids = *components_.solids;
+  auto& contact = *components_.contact;
+  const double dt = context.dt;
+  if (has_implicit_forces(solids)) {
+    const auto inverse = implicit_response<dim>(solids, dt);
+    const RCP<const Vector> predicted =
+        solids.velocity_of(momentum, dt, context.constraints, *inverse);
+    const SettledMotion<dim> settled = settle_motion<dim>(
+        solids, &contact, context, {*predicted, *predicted, {}, inverse}, momentum);
+    if (!settled.contact.impulse.is_null())
+      momentum.update(1, *settled.contact.impulse, 1);
+    return settled.contact;
+  }
+  const ContactResponse response = joint_response<dim>(solids, dt);
+  const RCP<Vector> velocity =
+      response ? solids.velocity_of(momentum, dt, context.constraints, *response())
+               : solids.velocity_of(momentum, 0, context.constraints);
+  Vector change(*velocity, Teuchos::Copy);
+  const ContactReport<dim> report =
+      contact.resolve(solids, ContactPhase::velocity, dt, *velocity, response);
+  if (!report.impulse.is_null()) {
+    momentum.update(1, *report.impulse, 1);
+  } else if (report.n_contacts > 0) {
+    change.update(1, *velocity, -1);
+    apply(*solids.mass(), change, momentum, 1, 1);
+  }
+  return report;
+}
+
 template <int dim>
 MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& context,
                                                       const SolidMomentum<dim>& solids,
@@ -112,14 +148,28 @@ MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& co
                                                       const BlockVector* nearby) {
   constexpr double round_off = 1e-9;
   const auto momentum = rcp(new Vector(*solids.momentum, Teuchos::Copy));
-  if (!drag.is_null())
-    momentum->update(1, *drag, 1);
   MotionWithContacts<dim> end;
-  if (components_.contact && components_.solids->has_unknowns()) {
-    end = converge_with_contacts(context, momentum, nearby);
-    if (end.contact.n_contacts > 0)
-      end.contact_impulse = end.contact.impulse;
+  if (holds_contacts()) {
+    if (!drag.is_null())
+      momentum->update(1, *drag, 1);
+    MotionWithContacts<dim> held = converge_with_contacts(context, momentum, nearby);
+    end.solution = held.solution;
+    end.contact = held.contact;
+    if (held.contact.n_contacts > 0)
+      end.contact_impulse = held.contact.impulse;
   } else {
+    if (components_.contact && components_.solids->has_unknowns()) {
+      const RCP<const Vector> at_rest = impulse_at_rest(context.dt);
+      momentum->update(1, *at_rest, 1);
+      const auto impulse = rcp(new Vector(*momentum, Teuchos::Copy));
+      end.contact = contact_before_solve(context, *momentum);
+      impulse->update(1, *momentum, -1);
+      if (end.contact.n_contacts > 0)
+        end.contact_impulse = impulse;
+      momentum->update(-1, *at_rest, 1);
+    }
+    if (!drag.is_null())
+      momentum->update(1, *drag, 1);
     end.solution = converge(context, momentum, nearby);
   }
   if (end.solution.incompatibility > round_off) {

@@ -41,6 +41,11 @@ class CoupledSolve {
   /// linearisation. Collective.
   CoupledSolution converge(const StepContext<dim>& context, const RCP<Vector>& momentum,
                            const BlockVector* nearby = nullptr);
+  /// True if contacts, and limits of joints, are part of the coupled solve. Where closed fluid
+  /// locks rigid solids alone they are not: pockets that bodies pinch off between them and walls
+  /// block the same motions as contacts, and the solve does not tell which bears what. Then contact
+  /// acts on V_S* alone. The same on all ranks.
+  bool holds_contacts() const;
   /// True if these contacts leave surfaces that may still pass through one another: soft ones.
   bool leaves_impacts() const;
   /// Returns the contacts of the velocities that solids with `momentum` have if the fluid gives
@@ -84,6 +89,7 @@ class CoupledSolve {
  private:
   bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution,
                Vector& momentum);
+  ContactReport<dim> contact_before_solve(const StepContext<dim>& context, Vector& momentum);
   RCP<Vector> impulse_at_rest(double dt) const;
   RCP<Vector> expected_impulse(const StepContext<dim>& context, const Vector& momentum,
                                const Vector& velocity) const;

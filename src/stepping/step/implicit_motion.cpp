@@ -20,12 +20,13 @@ constexpr int most_iterations = 40, most_halvings = 40;
 template <int dim>
 class Response {
  public:
-  Response(const SolidSystem<dim>& solids, double dt) : solids_(solids), dt_(dt) {}
+  /// `known`: may be null.
+  Response(const SolidSystem<dim>& solids, double dt, const RCP<const LinearOperator>& known)
+      : solids_(solids), dt_(dt), inverse_(known) {}
   void forget() { inverse_ = Teuchos::null; }
   RCP<const LinearOperator> inverse() {
     if (inverse_.is_null())
-      inverse_ =
-          exact_inverse(solids_.solid_block(Teuchos::null, dt_), "implicit forces of solids");
+      inverse_ = implicit_response(solids_, dt_);
     return inverse_;
   }
 
@@ -113,6 +114,11 @@ double tolerable_part(const Descent<dim>& descent) {
 }  // namespace
 
 template <int dim>
+RCP<const LinearOperator> implicit_response(const SolidSystem<dim>& solids, double dt) {
+  return exact_inverse(solids.solid_block(Teuchos::null, dt), "implicit forces of solids");
+}
+
+template <int dim>
 ContactResponse joint_response(const SolidSystem<dim>& solids, double dt) {
   if (!solids.joints() || !solids.joints()->has_implicit_forces())
     return {};
@@ -131,7 +137,7 @@ SettledMotion<dim> settle_motion(SolidSystem<dim>& solids, ContactModel<dim>* co
   const ContactPhase phase =
       context.moves_positions ? ContactPhase::position : ContactPhase::velocity;
   SettledMotion<dim> settled;
-  Response<dim> response(solids, dt);
+  Response<dim> response(solids, dt, search.known_response);
   RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
   RCP<Vector> at = linearisation_of(solids);
   RCP<Vector> goal = rcp(new Vector(search.first, Teuchos::Copy));
@@ -224,10 +230,12 @@ bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocit
 
 template SettledMotion<2> settle_motion<2>(SolidSystem<2>&, ContactModel<2>*, const StepContext<2>&,
                                            const MotionSearch&, Vector&);
+template RCP<const LinearOperator> implicit_response(const SolidSystem<2>&, double);
 template ContactResponse joint_response(const SolidSystem<2>&, double);
 template ContactResponse joint_response(const SolidSystem<3>&, double);
 template SettledMotion<3> settle_motion<3>(SolidSystem<3>&, ContactModel<3>*, const StepContext<3>&,
                                            const MotionSearch&, Vector&);
+template RCP<const LinearOperator> implicit_response(const SolidSystem<3>&, double);
 template void bound_sweep<2>(const SolidSystem<2>&, double, const Vector&, Vector&);
 template void bound_sweep<3>(const SolidSystem<3>&, double, const Vector&, Vector&);
 template bool is_settled<2>(const SolidSystem<2>&, double, const Vector&);

@@ -15,6 +15,10 @@ struct SettledMotion {
       true;  ///< false: the forces are not yet those of this velocity, nor the contact
 };
 
+/// (M_S - dt D)^-1 with locked rows of the identity. Collective.
+template <int dim>
+RCP<const LinearOperator> implicit_response(const SolidSystem<dim>& solids, double dt);
+
 /// The answer of joints with stiff springs to what contact and limits do within a step of dt; empty
 /// without them: solids answer with their masses.
 template <int dim>
@@ -27,6 +31,8 @@ struct MotionSearch {
   /// Changes the velocities of every linearisation so that they fulfil what is asked besides; null:
   /// nothing is.
   std::function<void(Vector&)> adjust = {};
+  /// The `implicit_response` of now, for who has it; null: made when it is needed.
+  RCP<const LinearOperator> known_response = {};
 };
 
 /// Finds the motion of the solids alone in a solve over dt: with the impulses of the fluid as they

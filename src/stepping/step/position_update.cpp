@@ -74,7 +74,7 @@ void PositionUpdate<dim>::solve(const StepContext<dim>& context, const RCP<const
   if (!drag.is_null())
     momentum->update(1, *drag, 1);
   MotionWithContacts<dim> held;
-  if (components_.contact) {
+  if (solve_.holds_contacts()) {
     held = solve_.converge_with_contacts(context, momentum, nearby);
     found.solution = held.solution;
     found.path.contact = held.contact;
@@ -124,7 +124,8 @@ void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& fo
     found.velocity = settled.velocity;
     found.path.is_converged = settled.is_settled;
     add_last(settled.contact, found.path.contact);
-  } else if (components_.contact && solids.has_unknowns() && solve_.leaves_impacts()) {
+  } else if (components_.contact && solids.has_unknowns() &&
+             (!solve_.holds_contacts() || solve_.leaves_impacts())) {
     add_last(components_.contact->resolve(solids, ContactPhase::position, dt, *found.velocity,
                                           joint_response<dim>(solids, context.dt)),
              found.path.contact);

@@ -87,7 +87,7 @@ RCP<Vector> Prediction<dim>::solid_row(const StepContext<dim>& context, const Ex
     components_.coupling->coupling_transposed()->apply(*expected.of_fluid, *row, Teuchos::NO_TRANS,
                                                        -1, 1);
   // Solids that feel the pressure here feel what contact answers to it, too.
-  if (!expected.of_fluid.is_null() && components_.contact)
+  if (!expected.of_fluid.is_null() && solve_.holds_contacts())
     solve_.hold(solve_.expected_contacts(context, *solid_forces_.momentum(context).momentum,
                                          solve_.contact_response(context.dt)),
                 *row);

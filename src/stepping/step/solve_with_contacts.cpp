@@ -146,6 +146,12 @@ double largest(const std::vector<double>& values) {
 }  // namespace
 
 template <int dim>
+bool CoupledSolve<dim>::holds_contacts() const {
+  return components_.contact && components_.solids->has_unknowns() &&
+         (!system_.locks_solids() || leaves_impacts());
+}
+
+template <int dim>
 bool CoupledSolve<dim>::leaves_impacts() const {
   const auto& solids = components_.solids->solids();
   return std::any_of(solids.begin(), solids.end(), [](const SolidDescription& solid) {
@@ -407,7 +413,9 @@ RCP<Vector> CoupledSolve<dim>::reactions_to_contacts(const StepContext<dim>& con
   return reactions;
 }
 
+template bool CoupledSolve<2>::holds_contacts() const;
 template bool CoupledSolve<2>::leaves_impacts() const;
+template bool CoupledSolve<3>::holds_contacts() const;
 template bool CoupledSolve<3>::leaves_impacts() const;
 template MotionWithContacts<2> CoupledSolve<2>::converge_with_contacts(const StepContext<2>&,
                                                                        const RCP<Vector>&,
