@@ -42,7 +42,7 @@ class CoupledSolve {
   CoupledSolution converge(const StepContext<dim>& context, const RCP<Vector>& momentum,
                            const BlockVector* nearby = nullptr);
   /// True if contacts, and limits of joints, are part of the coupled solve. Where closed fluid
-  /// locks rigid solids alone they are not: pockets that bodies pinch off between them and walls
+  /// locks rigid solids alone they are not: regions that bodies pinch off between them and walls
   /// block the same motions as contacts, and the solve does not tell which bears what. Then contact
   /// acts on V_S* alone. The same on all ranks.
   bool holds_contacts() const;
