@@ -153,6 +153,9 @@ class RestInWater(unittest.TestCase):
                 self.assertLess(float(history[-1]["fluid_kinetic_energy"]), 1e-3)
                 self.assertLess(max(column(history, "momentum_error")), 1e-14)
                 self.assertLess(max(column(history, "contact_residual")), 1e-3 * G * .01)
+                self.assertLessEqual(max(column(history[-10:], "contact_solves")), 2)  # one a phase
+                stone = next(row for row in end if row["name"] == "Stone")
+                self.assertAlmostEqual(float(stone["contact_fy"]) / (1500 * G * .2 * .15), 1, delta=1e-3)  # its weight in water
 
     def test_bodies_float_at_their_draft(self):
         """Upright, a box; turned, a square log of half the density of water, which lies with a corner down under tilted gravity."""

@@ -44,6 +44,12 @@ Point<dim> impulse_along(const Tangent<dim>& t, double d, double friction, doubl
   return impulse;
 }
 
+/// For contacts whose slip is hidden by round-off.
+template <int dim>
+Point<dim> without_friction(const CoulombContact<dim>& contact, const Point<dim>& v) {
+  return -v[0] / contact.mobility(0, 0) * Point<dim>::Unit(0);
+}
+
 Point<2> slipping(const CoulombContact<2>& contact, const Point<2>& v, const Point<2>& last) {
   Tangent<2> t(last[1] > 0 || (last[1] == 0 && v[1] < 0) ? -1.0 : 1.0);
   Slip<2> slip = slip_along<2>(t, contact, v);
@@ -51,6 +57,8 @@ Point<2> slipping(const CoulombContact<2>& contact, const Point<2>& v, const Poi
     t = -t;
     slip = slip_along<2>(t, contact, v);
   }
+  if (!is_valid<2>(t, slip))
+    return without_friction<2>(contact, v);
   return impulse_along<2>(t, slip.d, contact.friction, v[0]);
 }
 
@@ -95,7 +103,8 @@ Tangent<3> slip_near(double begin, int n_brackets, const CoulombContact<3>& cont
                      const Point<3>& v) {
   const double width = 2 * M_PI / n_brackets;
   std::array<double, 2> ends{begin, begin};
-  std::array<double, 2> values{across(begin, contact, v), across(begin, contact, v)};
+  const double at_begin = across(begin, contact, v);
+  std::array<double, 2> values{at_begin, at_begin};
   for (int k = 0; k < n_brackets; ++k) {
     const int side = k % 2;  // forth and back in turn
     const double angle = begin + (side == 0 ? 1 : -1) * (k / 2 + 1) * width;
@@ -122,7 +131,7 @@ Point<3> slipping(const CoulombContact<3>& contact, const Point<3>& v, const Poi
     if (!t.isZero(0))
       return impulse_along<3>(t, slip_along<3>(t, contact, v).d, contact.friction, v[0]);
   }
-  return {-v[0] / contact.mobility(0, 0), 0, 0};  // round-off hides it
+  return without_friction<3>(contact, v);
 }
 
 }  // namespace
