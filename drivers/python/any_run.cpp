@@ -7,7 +7,6 @@
 
 #include "base/errors.hpp"
 #include "interfaces/fluid_sides.hpp"
-#include "interfaces/steering.hpp"
 #include "output/progress.hpp"
 #include "parameters/files/parameter_file.hpp"
 #include "parameters/files/strict_xml.hpp"
@@ -181,12 +180,12 @@ class SteppedRun : public AnyRun {
 
   void set_target(const std::string& joint, const std::vector<double>& q,
                   const std::vector<double>& rate) override {
-    auto* steered = solids().joints() ? side_of<SteeredJoints>(*solids().joints()) : nullptr;
-    check_input(steered != nullptr, "The scene has no joints, so none that is called \"{}\".",
+    ConstraintModel* joints = solids().joints();
+    check_input(joints != nullptr, "The scene has no joints, so none that is called \"{}\".",
                 joint);
     check_finite(q, "target", joint);
     check_finite(rate, "rate", joint);
-    steered->set_target(joint, time(), q, rate);
+    joints->set_target(joint, time(), q, rate);
   }
 
   bool add_table(const std::string& name, const std::vector<HistoryColumn>& columns) override {

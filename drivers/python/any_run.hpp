@@ -75,7 +75,8 @@ class AnyRun {
   virtual std::vector<BodyNumbers> bodies() const = 0;
   virtual std::vector<JointState> joints() const = 0;  ///< Local.
 
-  /// See SolidModel::set_load and interfaces/steering.hpp. Local, to be called alike on all ranks.
+  /// See SolidModel::set_load and ConstraintModel::set_target. Local, to be called alike on all
+  /// ranks.
   virtual void set_force(const std::string& body, const std::vector<double>& force,
                          const std::vector<double>& torque) = 0;
   virtual void set_target(const std::string& joint, const std::vector<double>& q,

@@ -4,9 +4,7 @@
 
 #include "articulated/free_motion.hpp"
 #include "articulated/mechanism.hpp"
-#include "interfaces/free_rigid_motion.hpp"
-#include "interfaces/limited_torques.hpp"
-#include "interfaces/steering.hpp"
+#include "interfaces/constraint.hpp"
 
 namespace lockstep {
 
@@ -83,18 +81,14 @@ class Articulation {
 
 /// The ties between the bodies of an articulation.
 template <int dim>
-class JointConstraints : public ConstraintModel,
-                         public FreeRigidMotion,
-                         public SteeredJoints,
-                         public LimitedTorques {
+class JointConstraints : public ConstraintModel {
  public:
   JointConstraints(std::shared_ptr<Articulation<dim>> articulation, const Communicator& comm);
 
   std::string name() const override { return "joints"; }
   std::vector<Combination> combinations() const override;
-  ClosedMotion close(double time, double dt, Vector& velocity) override;
-  ClosedFreeMotion close_free_motion(double time, double dt, const Vector& correction,
-                                     const Vector& solved, Vector& velocity) override;
+  ClosedMotion close(double time, double dt, const Vector& correction, const Vector& solved,
+                     Vector& velocity) override;
   std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const override;
   std::vector<GivenMotion> given_motions() const override;
   std::string limited() const override;
@@ -102,7 +96,6 @@ class JointConstraints : public ConstraintModel,
   int largest_block() const override;
   void take_note(const JointImpulses& impulses, double time, double dt) override;
   std::vector<JointState> states(double time) const override;
-  std::vector<char> limited_torques() const override;
   std::string note() const override;
   void set_target(const std::string& joint, double time, const std::vector<double>& q,
                   const std::vector<double>& rate) override;
@@ -112,7 +105,7 @@ class JointConstraints : public ConstraintModel,
   struct StepMotions {
     std::vector<BodyMass<dim>> masses;
     std::vector<BodyMotion<dim>> solved, motions;  ///< before contact; after it, then as they go
-    std::vector<TwistVector<dim>> corrections, later, constraint_error;  ///< see ClosedFreeMotion
+    std::vector<TwistVector<dim>> corrections, later, constraint_error;  ///< see ClosedMotion
   };
   /// Free motions of a mechanism, by its own numbers (LoneMechanism).
   struct FoundFreeMotions {

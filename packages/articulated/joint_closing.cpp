@@ -235,15 +235,8 @@ RCP<Vector> JointConstraints<dim>::marks_at_end(const RCP<const Map>& map) const
 }
 
 template <int dim>
-ClosedMotion JointConstraints<dim>::close(double time, double dt, Vector& velocity) {
-  const Vector solved(velocity, Teuchos::Copy);
-  return close_free_motion(time, dt, *make_vector(velocity.getMap()), solved, velocity);
-}
-
-template <int dim>
-ClosedFreeMotion JointConstraints<dim>::close_free_motion(double time, double dt,
-                                                          const Vector& correction,
-                                                          const Vector& solved, Vector& velocity) {
+ClosedMotion JointConstraints<dim>::close(double time, double dt, const Vector& correction,
+                                          const Vector& solved, Vector& velocity) {
   const Eigen::VectorXd change = dt * gather_rates(velocity);
   const std::vector<BodyPose<dim>> poses = articulation_->poses();
   const std::vector<BodyPose<dim>> ends = articulation_->prescribed_poses(time + dt);
@@ -274,7 +267,7 @@ ClosedFreeMotion JointConstraints<dim>::close_free_motion(double time, double dt
   for (const BodyMotion<dim>& motion : step.motions)
     twists.push_back(motion.twist);
   set_twists(twists, velocity);
-  ClosedFreeMotion motion;
+  ClosedMotion motion;
   if (any_closed) {
     motion.constraint_error = constraint_error(step.constraint_error, velocity.getMap());
     motion.correction = rcp(new Vector(correction, Teuchos::Copy));
@@ -286,11 +279,9 @@ ClosedFreeMotion JointConstraints<dim>::close_free_motion(double time, double dt
   return motion;
 }
 
-template ClosedMotion JointConstraints<2>::close(double, double, Vector&);
-template ClosedFreeMotion JointConstraints<2>::close_free_motion(double, double, const Vector&,
-                                                                 const Vector&, Vector&);
-template ClosedMotion JointConstraints<3>::close(double, double, Vector&);
-template ClosedFreeMotion JointConstraints<3>::close_free_motion(double, double, const Vector&,
-                                                                 const Vector&, Vector&);
+template ClosedMotion JointConstraints<2>::close(double, double, const Vector&, const Vector&,
+                                                 Vector&);
+template ClosedMotion JointConstraints<3>::close(double, double, const Vector&, const Vector&,
+                                                 Vector&);
 
 }  // namespace lockstep

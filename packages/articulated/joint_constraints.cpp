@@ -208,6 +208,7 @@ std::vector<JointState> JointConstraints<dim>::states(double time) const {
       if (joint.first_rate >= 0 && dt_ > 0) {
         state.torque = impulse_[joint.first_rate + k] / dt_;
         state.limit_torque = limit_impulse_[joint.first_rate + k] / dt_;
+        state.at_largest_torque = limited_[joint.first_rate + k] != 0;
         state.power = state.torque * (joint.q[k] - joint.at_begin.q[k]) / dt_;
       }
       states.push_back(state);
@@ -216,19 +217,6 @@ std::vector<JointState> JointConstraints<dim>::states(double time) const {
       states.push_back(state);
   }
   return states;
-}
-
-template <int dim>
-std::vector<char> JointConstraints<dim>::limited_torques() const {
-  std::vector<char> all;
-  for (const Joint<dim>& joint : articulation_->joints()) {
-    const auto n = std::max<Eigen::Index>(joint.q.size(), 1);  // a weld has an entry too
-    for (Eigen::Index k = 0; k < n; ++k)
-      all.push_back(joint.first_rate >= 0 && joint.q.size() > 0 && !limited_.empty()
-                        ? limited_[joint.first_rate + k]
-                        : 0);
-  }
-  return all;
 }
 
 namespace {

@@ -62,8 +62,8 @@ void JointRates<dim>::explicit_momentum(double, double dt, Vector& momentum) con
 }
 
 template <int dim>
-SolidWork JointRates<dim>::solid_work(double time, double dt, const Vector& velocity,
-                                      const Vector& mean) const {
+std::optional<SolidWork> JointRates<dim>::solid_work(double time, double dt, const Vector& velocity,
+                                                     const Vector& mean) const {
   SolidWork work;
   if (!articulation_->any_acts())
     return work;

@@ -11,14 +11,13 @@ namespace lockstep {
 /// bodies lend them (P^T M P). Behind them stand the twists of prescribed bodies that joints tie
 /// others to, as given dofs. All live on rank 0; values are replicated.
 template <int dim>
-class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public WorkingSolids<dim> {
+class JointRates : public SolidModel<dim>, public AuditedSolids<dim> {
  public:
   JointRates(std::shared_ptr<Articulation<dim>> articulation, const Communicator& comm,
              double start_time);
 
   std::string name() const override { return "joints"; }
   const AuditedSolids<dim>* audit() const override { return this; }
-  const WorkingSolids<dim>* work() const override { return this; }
   const std::vector<SolidDescription>& solids() const override { return none_; }
   const SurfaceMesh<dim>& surface() const override { return surface_; }
   void velocity_row(const SurfacePoint<dim>&, const Point<dim>&,
@@ -35,8 +34,8 @@ class JointRates : public SolidModel<dim>, public AuditedSolids<dim>, public Wor
   void take_kicks() override { articulation_->take_kicks(); }
   void begin_step(double time, double dt) override { articulation_->begin_step(time, dt); }
   Momentum<dim> external_impulse(double, double) const override { return {}; }
-  SolidWork solid_work(double time, double dt, const Vector& velocity,
-                       const Vector& mean) const override;
+  std::optional<SolidWork> solid_work(double time, double dt, const Vector& velocity,
+                                      const Vector& mean) const override;
   std::vector<Momentum<dim>> momentum_of_each(const Vector&) const override { return {}; }
   std::vector<GlobalIndex> locked_dofs() const override;
   std::vector<double> locked_velocities(double begin, double end) const override;

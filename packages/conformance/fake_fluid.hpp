@@ -7,6 +7,8 @@
 
 namespace lockstep {
 
+enum class FakeFaceKind { inactive, wall, free, coupled };
+
 /// A fluid in a box of a few cells between walls.
 template <int dim>
 struct FakeBox {
@@ -19,17 +21,40 @@ struct FakeBox {
   int open_axis = -1;                       ///< p = 0 at the upper side of this axis; -1: closed
 };
 
+template <int dim>
+class FakeFluid;
+
+/// Its viscosity: the 5-point (7-point) formula of every velocity component.
+template <int dim>
+class FakeViscosity : public ViscousFluid<dim> {
+ public:
+  explicit FakeViscosity(FakeFluid<dim>& fluid) : fluid_(fluid) {}
+  std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
+  Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
+
+ private:
+  using FaceKind = FakeFaceKind;
+
+  /// Coefficient of a viscous coupling [kg/s].
+  double bond() const;
+  /// Calls `visit(neighbour, axis of the coupling)` for the faces of the same axis beside it.
+  template <typename Face, typename Visit>
+  void for_each_neighbour(const Face& face, Visit visit) const;
+
+  FakeFluid<dim>& fluid_;
+};
+
 /// The fluid partner in tests of solids, couplings and solvers: staggered velocities on FakeBox.
 /// Cells, faces and velocities are replicated on every rank, so that a reader can follow each
 /// number; only the pressure unknowns (active cells in lexicographic order, in equal shares) and
 /// the lists an interface calls local are distributed. Nothing is transported: u* = u^n.
 template <int dim>
-class FakeFluid : public FluidDiscretization<dim>,
-                  public AuditedFluid<dim>,
-                  public ViscousFluid<dim> {
+class FakeFluid : public FluidDiscretization<dim>, public AuditedFluid<dim> {
+  friend class FakeViscosity<dim>;
+
  public:
   using typename FluidDiscretization<dim>::Surface;
-  enum class FaceKind { inactive, wall, free, coupled };
+  using FaceKind = FakeFaceKind;
   struct Face {
     FaceKind kind = FaceKind::inactive;
     int owner = 0;       ///< rank of its first active cell
@@ -48,7 +73,7 @@ class FakeFluid : public FluidDiscretization<dim>,
 
   std::string name() const override { return "fake fluid"; }
   const AuditedFluid<dim>* audit() const override { return this; }
-  ViscousFluid<dim>* viscosity() override { return box_.viscosity > 0 ? this : nullptr; }
+  ViscousFluid<dim>* viscosity() override { return box_.viscosity > 0 ? &viscosity_ : nullptr; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
   void divergence(Vector& rhs) const override;
@@ -58,8 +83,6 @@ class FakeFluid : public FluidDiscretization<dim>,
 
   void begin_prediction() override { predicted_ = velocity_; }
   ForceImpulse<dim> add_forces(double time, double dt) override;
-  std::unique_ptr<ViscousSystem<dim>> viscous_system() const override;
-  Momentum<dim> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override;
   void advect(double, double, const MovingSurface<dim>&) override { predicted_ = velocity_; }
   void accept() override { velocity_ = predicted_; }
 
@@ -92,11 +115,6 @@ class FakeFluid : public FluidDiscretization<dim>,
   void assemble_pressure_block();
   double mass(const Face& face) const;
   bool owned(const Face& face) const { return face.owner == comm_->getRank(); }
-  /// Coefficient of a viscous coupling [kg/s].
-  double bond() const;
-  /// Calls `visit(neighbour, axis of the coupling)` for the faces of the same axis beside it.
-  template <typename Visit>
-  void for_each_neighbour(const Face& face, Visit visit) const;
   /// Every rank's values for its faces of this kind, into u* of all ranks. Collective.
   void replicate(FaceKind kind, const std::vector<double>& mine);
   std::vector<double> everywhere(const Vector& pressure) const;
@@ -111,6 +129,7 @@ class FakeFluid : public FluidDiscretization<dim>,
   std::vector<int> solid_;            ///< solid of each cell, -1 in the fluid
   std::vector<int> rank_of_unknown_;
   FluidGeometry<dim> frozen_;
+  FakeViscosity<dim> viscosity_{*this};
 };
 
 }  // namespace lockstep

@@ -45,11 +45,11 @@ void ContactProblem<dim>::leave_out_immovable(ImpulseSolver<dim>& solver) {
   bool any = false;
   for (Candidate& candidate : candidates_) {
     const Contact<dim>& contact = candidate.contact;
-    if (any_bends({contact.solid, contact.other}) && !system_.joints())
+    if (law_.any_bends(contact.solid, contact.other) && !system_.joints())
       continue;  // nodes that are held are no candidates
-    const double speed = normal_velocity(motion, contact);
+    const double speed = law_.normal_velocity(motion, contact);
     if (candidate.target > speed && !solver.can_move(contact)) {
-      if (speed < 0 && (is_given(contact.solid) || is_given(contact.other)))
+      if (speed < 0 && (law_.is_given(contact.solid) || law_.is_given(contact.other)))
         check_room(contact);
       any = candidate.active = true;
     }
@@ -65,7 +65,7 @@ void ContactProblem<dim>::leave_out_immovable(ImpulseSolver<dim>& solver) {
 template <int dim>
 bool ContactProblem<dim>::activate(Candidate& candidate, ImpulseSolver<dim>& solver) const {
   candidate.active = true;
-  return solver.add(candidate.contact, candidate.target, friction(candidate.contact));
+  return solver.add(candidate.contact, candidate.target, law_.friction(candidate.contact));
 }
 
 template <int dim>
@@ -76,12 +76,12 @@ int ContactProblem<dim>::activate_violated(const SolidMotion<dim>& motion, int m
     std::vector<std::pair<double, int>> violated;
     for (int k : members) {
       const Candidate& candidate = candidates_[k];
-      const double lack = candidate.target - normal_velocity(motion, candidate.contact);
+      const double lack = candidate.target - law_.normal_velocity(motion, candidate.contact);
       if (!candidate.active && lack > tolerance)
         violated.push_back({lack, k});
     }
     std::vector<Point<dim>> chosen;
-    const bool all = any_bends(pair);
+    const bool all = law_.any_bends(pair.first, pair.second);
     for (const auto& [lack, k] : violated) {
       if (all && activate(candidates_[k], solver))
         ++n_activated;
@@ -196,7 +196,7 @@ std::vector<Contact<dim>> ContactProblem<dim>::impacts_of(
   SurfacePath<dim> path(shapes_, motion, dt_);
   path.unheld = unheld_;
   for (const FoundImpact<dim>& found : find_impacts(shapes_, path)) {
-    const double apart = clearance_between(found.pair.solid, found.pair.other);
+    const double apart = law_.clearance_between(found.pair.solid, found.pair.other);
     contacts.push_back(impact_contact(shapes_, motion, path, found, apart, dt_));
   }
   return contacts;
@@ -209,7 +209,7 @@ int ContactProblem<dim>::stop_impacts(ImpulseSolver<dim>& solver) const {
     const std::vector<Contact<dim>> impacts = impacts_of(solver.velocity());
     bool any = false;
     for (const Contact<dim>& contact : impacts)
-      any = solver.add(contact, -contact.gap / dt_, friction(contact)) || any;
+      any = solver.add(contact, -contact.gap / dt_, law_.friction(contact)) || any;
     if (!any)
       break;
     sweeps += sweep(solver, options_.sweeps);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "contact/gauss_seidel_contact.hpp"
+#include "contact/contact_law.hpp"
 #include "contact/impacts/impacts.hpp"
 
 namespace lockstep {
@@ -33,9 +33,9 @@ class ContactProblem {
   ContactProblem(const SolidSystem<dim>& system, const ContactShapes<dim>& shapes,
                  const ContactConditions& setting, ContactPhase phase, double dt);
 
-  /// Contacts that bounce by an earlier decision of this step, by `bounce_key`: they bounce in this
-  /// one, too, which adds its own. Decisions that a coupled solve asks for one after the other
-  /// would go to and fro between a bounce and none. Before `prepare`.
+  /// Contacts that bounce by an earlier decision of this step, by `ContactLaw::bounce_key`: they
+  /// bounce in this one, too, which adds its own. Decisions that a coupled solve asks for one after
+  /// the other would go to and fro between a bounce and none. Before `prepare`.
   void keep_bouncing(std::set<std::size_t>& bouncing) { bouncing_ = &bouncing; }
   /// Leaves impacts along the way of soft surfaces to a later resolution; before `prepare`.
   void leave_impacts() { leaves_impacts_ = true; }
@@ -91,31 +91,6 @@ class ContactProblem {
   /// `unheld`: nothing has acted on the motion yet.
   void add_candidates(const SolidMotion<dim>& motion, const SolidMotion<dim>& before,
                       bool unheld = true);
-  /// Least normal velocity [m/s] for a motion, `before` that of the beginning of the step.
-  double target(const Contact<dim>& contact, const SolidMotion<dim>& motion,
-                const SolidMotion<dim>& before) const;
-  /// Names a contact within a step.
-  std::size_t bounce_key(const Contact<dim>& contact) const;
-  /// Returns the place to which the turning of a rigid solid takes a point of it against the normal
-  /// within the step: the end of its arc, or the lowest point on the way. Other solids do not turn.
-  Point<dim> turned_place(const SolidMotion<dim>& motion, int solid, const Point<dim>& x,
-                          const Point<dim>& normal) const;
-  /// Lets the impulse act where turning takes the place in contact, and finds its `bend`: the gap
-  /// there as a linear function of the velocities near `motion`, that of the beginning of the step,
-  /// since what nothing holds yet may turn in any way. Along its chord a wheel would land on a
-  /// point ahead of it, which brakes it.
-  void follow_turns(const SolidMotion<dim>& motion, Contact<dim>& contact) const;
-  /// True if it does not move by impulses: a wall or a prescribed solid.
-  bool is_given(int solid) const { return solid < 0 || shapes_.solids()[solid].prescribed; }
-  double normal_velocity(const SolidMotion<dim>& motion, const Contact<dim>& contact) const;
-  /// Geometric mean of a property of both sides.
-  double mean(const Contact<dim>& contact, double SolidDescription::*property,
-              const std::optional<double>& of_walls) const;
-  double friction(const Contact<dim>& contact) const;
-  double slop(const Contact<dim>& contact) const;
-  /// Gap that surfaces of solids which are not both rigid keep between them [m].
-  double clearance_between(int solid, int other) const;
-  bool any_bends(const Pair& pair) const;
   /// Returns the largest violation of inactive contacts and limits [m/s].
   double largest_violation(const SolidMotion<dim>& motion,
                            const std::vector<double>& velocity) const;
@@ -151,7 +126,7 @@ class ContactProblem {
   double spacing_;
   ContactPhase phase_;
   double dt_;
-  std::vector<double> half_thickness_;  ///< half thickness of the skin of each solid [m]
+  ContactLaw<dim> law_;
   std::vector<double> before_;
   std::vector<Point<dim>> unheld_;
   std::vector<Box<dim>> searched_;  ///< velocities of the solids that the search has followed

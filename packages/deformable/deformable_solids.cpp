@@ -228,8 +228,9 @@ AngularVector<dim> DeformableSolids<dim>::inner_angular_impulse(double dt) const
 /// Works of the forces in `explicit_momentum` and D; the work of the stretch limit counts as
 /// elastic.
 template <int dim>
-SolidWork DeformableSolids<dim>::solid_work(double, double dt, const Vector& velocity,
-                                            const Vector& mean) const {
+std::optional<SolidWork> DeformableSolids<dim>::solid_work(double, double dt,
+                                                           const Vector& velocity,
+                                                           const Vector& mean) const {
   const NodeSpace<dim>& space = nodes_.space;
   const Nodes found = space.with_ghosts(velocity), before = space.with_ghosts(*nodes_.velocity),
               rate = space.owned(mean);

@@ -16,8 +16,7 @@ namespace lockstep {
 template <int dim>
 class DeformableSolids : public SolidModel<dim>,
                          public AuditedSolids<dim>,
-                         public SolidOutput<dim>,
-                         public WorkingSolids<dim> {
+                         public SolidOutput<dim> {
  public:
   /// `type` is the name of the model, gravity [m/s^2], the start of the run [s]. Collective.
   DeformableSolids(const std::string& type, const std::vector<DeformableBody<dim>>& bodies,
@@ -28,7 +27,6 @@ class DeformableSolids : public SolidModel<dim>,
   NonlinearSolids<dim>* nonlinear() override { return implicit_.any() ? &implicit_ : nullptr; }
   const SolidOutput<dim>* output() const override { return this; }
   const VolumeSweeper<dim>* sweeper() const override { return &sweep_; }
-  const WorkingSolids<dim>* work() const override { return this; }
 
   const std::vector<SolidDescription>& solids() const override { return surface_.solids(); }
   const SurfaceMesh<dim>& surface() const override { return surface_.mesh(); }
@@ -76,8 +74,8 @@ class DeformableSolids : public SolidModel<dim>,
   /// Angular impulse of linear elasticity of turned bodies, of means over sub-steps, and of the
   /// stretch limit of S1.
   AngularVector<dim> inner_angular_impulse(double dt) const override;
-  SolidWork solid_work(double time, double dt, const Vector& velocity,
-                       const Vector& mean) const override;
+  std::optional<SolidWork> solid_work(double time, double dt, const Vector& velocity,
+                                      const Vector& mean) const override;
   void add_frames(std::vector<SurfaceFrame>& frames) const override;
   GlobalIndex n_clamped_elements() const override { return forces_.n_clamped; }
   double stretch_beyond_limit() const override { return stretch_beyond_limit_; }

@@ -196,12 +196,12 @@ std::vector<Momentum<dim>> Lines<dim>::momentum_of_each(const Vector& generalize
 }
 
 template <int dim>
-SolidWork Lines<dim>::Work::solid_work(double, double dt, const Vector& velocity,
-                                       const Vector& mean) const {
-  const std::vector<Ends> end = lines.gather(velocity), middle = lines.gather(mean);
+std::optional<SolidWork> Lines<dim>::solid_work(double, double dt, const Vector& velocity,
+                                                const Vector& mean) const {
+  const std::vector<Ends> end = gather(velocity), middle = gather(mean);
   SolidWork work;
-  for (int line = 0; line < static_cast<int>(lines.lines_.size()); ++line) {
-    const Law own = lines.law(line);
+  for (int line = 0; line < static_cast<int>(lines_.size()); ++line) {
+    const Law own = law(line);
     const Point<dim> opening = middle[line][1] - middle[line][0];
     const Point<dim> at_end = end[line][1] - end[line][0];
     work.elastic -= dt * opening.dot(own.spring_slope * at_end);

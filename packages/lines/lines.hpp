@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "interfaces/energy.hpp"
-#include "interfaces/line_tensions.hpp"
 #include "interfaces/solid_sides.hpp"
 #include "lines/line_law.hpp"
 
@@ -28,17 +27,13 @@ struct Line {
 /// dt/2 K (V - (x^{n+1} - x^n) / dt) - B (V^n + V) / 2 with K and B at the middle of the way, which
 /// is of second order and stable at any step. Nodes live on rank 0; values are replicated.
 template <int dim>
-class Lines : public SolidModel<dim>,
-              public AuditedSolids<dim>,
-              public SolidOutput<dim>,
-              public LineTensions {
+class Lines : public SolidModel<dim>, public AuditedSolids<dim>, public SolidOutput<dim> {
  public:
   /// `type`: the name under which the model is registered. Collective.
   Lines(std::string type, std::vector<Line<dim>> lines, const Communicator& comm);
 
   std::string name() const override { return type_; }
   const AuditedSolids<dim>* audit() const override { return this; }
-  const WorkingSolids<dim>* work() const override { return &work_; }
   const SolidOutput<dim>* output() const override { return this; }
   const std::vector<Line<dim>>& lines() const { return lines_; }
 
@@ -62,6 +57,8 @@ class Lines : public SolidModel<dim>,
   std::vector<NodeAttachment<dim>> attachments() const override;
   Momentum<dim> external_impulse(double time, double dt) const override;
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const override;
+  std::optional<SolidWork> solid_work(double time, double dt, const Vector& velocity,
+                                      const Vector& mean) const override;
 
   RCP<const Vector> velocity() const override;
   void set_velocity(const Vector& velocity) override;
@@ -75,13 +72,6 @@ class Lines : public SolidModel<dim>,
   void load(const CheckpointReader& reader) override;
 
  private:
-  /// The side that tells work.
-  struct Work : WorkingSolids<dim> {
-    explicit Work(const Lines<dim>& all) : lines(all) {}
-    SolidWork solid_work(double time, double dt, const Vector& velocity,
-                         const Vector& mean) const override;
-    const Lines<dim>& lines;
-  };
   using Ends = std::array<Point<dim>, 2>;
   /// The law of a line in the present stage: constant force, less slope times the difference of its
   /// ends' velocities on the second end, plus that on the first.
@@ -100,7 +90,6 @@ class Lines : public SolidModel<dim>,
   void for_each_value(const Function& f);
   std::vector<double> state() const;
 
-  Work work_{*this};
   std::string type_;
   std::vector<Line<dim>> lines_;
   std::vector<Ends> before_;           ///< places before the last `move`

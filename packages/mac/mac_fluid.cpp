@@ -419,12 +419,6 @@ Point<dim> MacFluid<dim>::wall_velocity(int axis, int end, double time) const {
 }
 
 template <int dim>
-bool MacFluid<dim>::is_periodic() const {
-  const std::array<bool, dim> axes = periodic_axes();
-  return std::find(axes.begin(), axes.end(), true) != axes.end();
-}
-
-template <int dim>
 std::array<bool, dim> MacFluid<dim>::periodic_axes() const {
   return flow_.domain.grid.description().periodic;
 }

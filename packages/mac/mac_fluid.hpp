@@ -1,7 +1,6 @@
 #pragma once
 #include <memory>
 
-#include "interfaces/periodic_fluid.hpp"
 #include "mac/parts/mac_audit.hpp"
 #include "mac/parts/mac_gas.hpp"
 #include "mac/parts/mac_liquid.hpp"
@@ -16,7 +15,7 @@ namespace lockstep {
 ///
 /// The time of walls and inflows that ramp up is that of the last `add_forces`, time + dt.
 template <int dim>
-class MacFluid : public FluidDiscretization<dim>, public PeriodicFluid<dim> {
+class MacFluid : public FluidDiscretization<dim> {
  public:
   using typename FluidDiscretization<dim>::Surface;
 
@@ -63,7 +62,6 @@ class MacFluid : public FluidDiscretization<dim>, public PeriodicFluid<dim> {
   Box<dim> bounds() const override { return flow_.domain.bounds(); }
   std::array<std::array<bool, 2>, dim> closed_sides() const override;
   Point<dim> wall_velocity(int axis, int end, double time) const override;
-  bool is_periodic() const override;
   std::array<bool, dim> periodic_axes() const override;
   std::vector<PrescribedFlux> side_fluxes(double time) const override;
 

@@ -5,6 +5,7 @@
 
 #include "coupling/impossible_flow.hpp"
 #include "coupling/null_space.hpp"
+#include "coupling/solid_totals.hpp"
 #include "interfaces/coupling_sides.hpp"
 #include "linear/matrix_rows.hpp"
 #include "linear/matrix_sum.hpp"
@@ -37,7 +38,7 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
   ++blocks_.solids.version;
   blocks_.set_blocks(fluid_.pressure_block());
   blocks_.solids.blocks = solids_.blocks();
-  blocks_.near_null_space = solids_.near_null_space(coupling_.added_mass());
+  blocks_.near_null_space = near_null_space(solids_, coupling_.added_mass());
   blocks_.null_space = null_spaces.coupled;
   blocks_.pressure_null_space = null_spaces.pressure;
 

@@ -75,40 +75,6 @@ RCP<const CrsMatrix> SolidSystem<dim>::lumped_block() const {
 }
 
 template <int dim>
-NearNullSpace SolidSystem<dim>::near_null_space(const RCP<const CrsMatrix>& added) const {
-  constexpr int n_motions = dim + n_rotations<dim>;
-  NearNullSpace all;
-  RCP<MultiVector> motions;
-  for (int m = 0; m < n_models(); ++m) {
-    const RigidMotions part = model(m).near_null_space();
-    if (part.empty())
-      continue;
-    if (motions.is_null()) {
-      motions = rcp(new MultiVector(map_, n_motions));
-      all.body_of_row.assign(map_->getNodeNumElements(), -1);
-    }
-    motions->offsetViewNonConst(model(m).dof_map(), begin_[m].local)->update(1, *part.motions, 0);
-    for (std::size_t row = 0; row < part.body_of_row.size(); ++row)
-      all.body_of_row[begin_[m].local + row] = all.n_bodies + part.body_of_row[row];
-    all.n_bodies += part.n_bodies;
-  }
-  all.motions = motions;
-  if (all.empty())
-    return all;
-  const auto mass = lumped_mass(*full_block(added, 0), all);
-  if (!reduction_.is_identity()) {
-    const auto values = mass->getDataNonConst();
-    const auto is_unknown = reduction_.unknowns()->getData();
-    for (std::size_t row = 0; row < all.body_of_row.size(); ++row) {
-      if (all.body_of_row[row] >= 0 && is_unknown[row] == 0)
-        values[row] = 1;
-    }
-  }
-  all.mass = mass;
-  return all;
-}
-
-template <int dim>
 RCP<const LinearOperator> SolidSystem<dim>::mass_inverse() const {
   std::vector<RCP<const LinearOperator>> masses;
   for (const auto& solid_model : models_)
@@ -148,7 +114,6 @@ template RCP<const LinearOperator> SolidSystem<2>::solid_block(const RCP<const C
 template RCP<const LinearOperator> SolidSystem<2>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
 template RCP<const CrsMatrix> SolidSystem<2>::lumped_block() const;
-template NearNullSpace SolidSystem<2>::near_null_space(const RCP<const CrsMatrix>&) const;
 template RCP<const LinearOperator> SolidSystem<2>::mass_inverse() const;
 template RCP<Vector> SolidSystem<2>::velocity_of(const Vector&, double, const Reduction&,
                                                  const LinearOperator&) const;
@@ -158,7 +123,6 @@ template RCP<const LinearOperator> SolidSystem<3>::solid_block(const RCP<const C
 template RCP<const LinearOperator> SolidSystem<3>::full_block(const RCP<const CrsMatrix>&,
                                                               double) const;
 template RCP<const CrsMatrix> SolidSystem<3>::lumped_block() const;
-template NearNullSpace SolidSystem<3>::near_null_space(const RCP<const CrsMatrix>&) const;
 template RCP<const LinearOperator> SolidSystem<3>::mass_inverse() const;
 template RCP<Vector> SolidSystem<3>::velocity_of(const Vector&, double, const Reduction&,
                                                  const LinearOperator&) const;

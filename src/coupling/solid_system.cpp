@@ -193,17 +193,6 @@ void SolidSystem<dim>::add_midpoint_correction(double dt, Vector& momentum) cons
 }
 
 template <int dim>
-RCP<Vector> SolidSystem<dim>::implicit_impulse(double dt, const Vector& velocity) const {
-  const auto stacked = rcp(new Vector(map_));
-  for (int m = 0; m < n_models(); ++m) {
-    const RCP<const LinearOperator> force = model(m).implicit_force(dt);
-    if (!force.is_null())
-      apply(*force, *part(velocity, m), *part(*stacked, m), dt);
-  }
-  return stacked;
-}
-
-template <int dim>
 bool SolidSystem<dim>::linearise(double dt, const Vector& velocity) {
   bool any = false;
   for (int m = 0; m < n_models(); ++m) {

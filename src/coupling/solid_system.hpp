@@ -84,8 +84,6 @@ class SolidSystem {
   RCP<const LinearOperator> mass_inverse() const;
   /// The models' dofs in vectors of this rank, by the models' names.
   std::vector<Block> blocks() const;
-  /// The models' rigid motions on `map`, with the masses M_S + added. Collective.
-  NearNullSpace near_null_space(const RCP<const CrsMatrix>& added) const;
   /// Velocity of the solids without fluid: V = P y + b with P^T (M_S - dt D) V = P^T q for a
   /// stacked momentum q. `inverse`: of `solid_block` without added mass. Collective.
   RCP<Vector> velocity_of(const Vector& momentum, double dt, const Reduction& constraints,
@@ -120,9 +118,6 @@ class SolidSystem {
   void set_velocity(const Vector& velocity);
   RCP<Vector> explicit_momentum(double time, double dt) const;
   void add_midpoint_correction(double dt, Vector& momentum) const;
-  /// dt D V: what the implicit forces give in a step. Its sum is zero, but not its torque: forces
-  /// linearised at x act at x + dt V. Collective.
-  RCP<Vector> implicit_impulse(double dt, const Vector& velocity) const;
   /// Linearises all models' implicit forces; false if there are none. Collective.
   bool linearise(double dt, const Vector& velocity);
   /// Another number after anything that changes the implicit forces: a step that begins or

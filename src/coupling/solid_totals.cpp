@@ -1,5 +1,6 @@
 #include "coupling/solid_totals.hpp"
 
+#include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 
@@ -50,6 +51,14 @@ bool is_audited(const SolidSystem<dim>& solids) {
   for (int m = 0; m < solids.n_models(); ++m)
     all = all && solids.model(m).audit();
   return all;
+}
+
+template <int dim>
+bool has_soft_solids(const SolidSystem<dim>& solids) {
+  const std::vector<SolidDescription>& all = solids.solids();
+  return std::any_of(all.begin(), all.end(), [](const SolidDescription& solid) {
+    return !solid.rigid && !solid.prescribed;
+  });
 }
 
 template <int dim>
@@ -155,10 +164,59 @@ std::shared_ptr<const SurfaceSnapshot<dim>> with_images_of(
                                                       other.order(), other.images());
 }
 
+template <int dim>
+NearNullSpace near_null_space(const SolidSystem<dim>& solids, const RCP<const CrsMatrix>& added) {
+  constexpr int n_motions = dim + n_rotations<dim>;
+  NearNullSpace all;
+  const RCP<const Map> map = solids.map();
+  const std::vector<Block> blocks = solids.blocks();
+  RCP<MultiVector> motions;
+  for (int m = 0; m < solids.n_models(); ++m) {
+    const RigidMotions part = solids.model(m).near_null_space();
+    if (part.empty())
+      continue;
+    if (motions.is_null()) {
+      motions = rcp(new MultiVector(map, n_motions));
+      all.body_of_row.assign(map->getNodeNumElements(), -1);
+    }
+    motions->offsetViewNonConst(solids.model(m).dof_map(), blocks[m].begin)
+        ->update(1, *part.motions, 0);
+    for (std::size_t row = 0; row < part.body_of_row.size(); ++row)
+      all.body_of_row[blocks[m].begin + row] = all.n_bodies + part.body_of_row[row];
+    all.n_bodies += part.n_bodies;
+  }
+  all.motions = motions;
+  if (all.empty())
+    return all;
+  const auto mass = lumped_mass(*solids.full_block(added, 0), all);
+  if (!solids.reduction().is_identity()) {
+    const auto values = mass->getDataNonConst();
+    const auto is_unknown = solids.reduction().unknowns()->getData();
+    for (std::size_t row = 0; row < all.body_of_row.size(); ++row) {
+      if (all.body_of_row[row] >= 0 && is_unknown[row] == 0)
+        values[row] = 1;
+    }
+  }
+  all.mass = mass;
+  return all;
+}
+
+template <int dim>
+RCP<Vector> implicit_impulse(const SolidSystem<dim>& solids, double dt, const Vector& velocity) {
+  const auto stacked = make_vector(solids.map());
+  for (int m = 0; m < solids.n_models(); ++m) {
+    const RCP<const LinearOperator> force = solids.model(m).implicit_force(dt);
+    if (!force.is_null())
+      apply(*force, *solids.part(velocity, m), *solids.part(*stacked, m), dt);
+  }
+  return stacked;
+}
+
 template double largest_surface_speed<2>(const SolidSystem<2>&);
 template Momentum<2> external_impulse<2>(const SolidSystem<2>&, double, double);
 template AngularVector<2> inner_angular_impulse<2>(const SolidSystem<2>&, double);
 template bool is_audited<2>(const SolidSystem<2>&);
+template bool has_soft_solids<2>(const SolidSystem<2>&);
 template bool has_implicit_forces<2>(const SolidSystem<2>&);
 template RCP<const Vector> linearisation<2>(const SolidSystem<2>&);
 template std::vector<ComputedEnergy> nonlinear_energies<2>(const SolidSystem<2>&, double,
@@ -166,10 +224,13 @@ template std::vector<ComputedEnergy> nonlinear_energies<2>(const SolidSystem<2>&
 template StepBound largest_stable_step<2>(const SolidSystem<2>&);
 template GlobalIndex n_clamped_elements<2>(const SolidSystem<2>&);
 template double stretch_beyond_limit<2>(const SolidSystem<2>&);
+template NearNullSpace near_null_space<2>(const SolidSystem<2>&, const RCP<const CrsMatrix>&);
+template RCP<Vector> implicit_impulse<2>(const SolidSystem<2>&, double, const Vector&);
 template double largest_surface_speed<3>(const SolidSystem<3>&);
 template Momentum<3> external_impulse<3>(const SolidSystem<3>&, double, double);
 template AngularVector<3> inner_angular_impulse<3>(const SolidSystem<3>&, double);
 template bool is_audited<3>(const SolidSystem<3>&);
+template bool has_soft_solids<3>(const SolidSystem<3>&);
 template bool has_implicit_forces<3>(const SolidSystem<3>&);
 template RCP<const Vector> linearisation<3>(const SolidSystem<3>&);
 template std::vector<ComputedEnergy> nonlinear_energies<3>(const SolidSystem<3>&, double,
@@ -177,6 +238,8 @@ template std::vector<ComputedEnergy> nonlinear_energies<3>(const SolidSystem<3>&
 template StepBound largest_stable_step<3>(const SolidSystem<3>&);
 template GlobalIndex n_clamped_elements<3>(const SolidSystem<3>&);
 template double stretch_beyond_limit<3>(const SolidSystem<3>&);
+template NearNullSpace near_null_space<3>(const SolidSystem<3>&, const RCP<const CrsMatrix>&);
+template RCP<Vector> implicit_impulse<3>(const SolidSystem<3>&, double, const Vector&);
 template bool is_where<2>(const SolidSystem<2>&, const SurfaceSnapshot<2>&);
 template std::shared_ptr<const SurfaceSnapshot<2>> with_images_of<2>(
     const SolidSystem<2>&, const SurfaceSnapshot<2>&,

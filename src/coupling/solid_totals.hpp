@@ -25,12 +25,23 @@ Momentum<dim> external_impulse(const SolidSystem<dim>& solids, double time, doub
 template <int dim>
 AngularVector<dim> inner_angular_impulse(const SolidSystem<dim>& solids, double dt);
 
+/// True if any solid that moves is soft: its surface may pass through others and itself between two
+/// times at which nothing touches. The same on all ranks. Local.
+template <int dim>
+bool has_soft_solids(const SolidSystem<dim>& solids);
 /// True if any model has nonlinear implicit forces.
 template <int dim>
 bool has_implicit_forces(const SolidSystem<dim>& solids);
 /// The velocities at which the forces of all models are linearised; null if none are.
 template <int dim>
 RCP<const Vector> linearisation(const SolidSystem<dim>& solids);
+/// dt D V: what the implicit forces give in a step. Its sum is zero, but not its torque: forces
+/// linearised at x act at x + dt V. Collective.
+template <int dim>
+RCP<Vector> implicit_impulse(const SolidSystem<dim>& solids, double dt, const Vector& velocity);
+/// The models' rigid motions on the map of the system, with the masses M_S + added. Collective.
+template <int dim>
+NearNullSpace near_null_space(const SolidSystem<dim>& solids, const RCP<const CrsMatrix>& added);
 /// The energies of each solid (`NonlinearSolids`). Collective.
 template <int dim>
 std::vector<ComputedEnergy> nonlinear_energies(const SolidSystem<dim>& solids, double dt,

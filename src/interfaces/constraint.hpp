@@ -15,13 +15,25 @@ struct Combination {
   std::vector<std::pair<GlobalIndex, double>> terms;  ///< dof and weight
 };
 
-/// Result of `ConstraintModel::close`.
+/// Result of `ConstraintModel::close`: a motion between whose begin and end bodies turn as their
+/// momenta have it.
 struct ClosedMotion {
   /// Velocity that a combination has beside its terms when bodies move so that all joints fit, on
   /// the stacked map. Null: some joints could not be closed, or are not to be; then V is the
   /// velocity of bodies which follow the rates of their joints, and the whole impulse of the joints
   /// belongs to the end of the step.
   RCP<Vector> constraint_error;
+  /// With `constraint_error`: momentum that S1 adds in place of the solids' own
+  /// `SolidModel::add_midpoint_correction`, now that the impulses at its begin are known. Null:
+  /// theirs stays.
+  RCP<Vector> correction;
+  /// With `constraint_error`: impulse of the joints beside the reactions that S1 found, at the
+  /// begin and on the way; part of the momentum of S2. Null: there is none.
+  RCP<Vector> later_impulse;
+  /// With `constraint_error`: 1 at the dofs of bodies and joints that could not be closed while
+  /// others were, 0 elsewhere; their part of `constraint_error` is zero, and their whole impulse
+  /// belongs to the end of the step. Null: all were closed.
+  RCP<Vector> at_end;
 };
 
 /// A coordinate of a joint after a step, for joints.csv: an angle [rad] or a displacement [m].
@@ -29,12 +41,13 @@ struct JointState {
   std::string name;    ///< name of the joint
   int coordinate = 0;  ///< from 1; 0 if it has one alone, or none
   double q = 0, rate = 0, target = 0;
-  double torque = 0;        ///< mean over the step, of control on the second solid [N m, N]
-  double power = 0;         ///< power of the control, mean over the step [W]
-  double limit_torque = 0;  ///< mean over the step, of limits on the second solid [N m, N]
-  double gap = 0;           ///< gap between the sides of the joint [m, rad]
-  bool two_halves = false;  ///< half of its impulse acted where the step began
-  bool at_limit = false;    ///< true also beyond a limit
+  double torque = 0;               ///< mean over the step, of control on the second solid [N m, N]
+  double power = 0;                ///< power of the control, mean over the step [W]
+  double limit_torque = 0;         ///< mean over the step, of limits on the second solid [N m, N]
+  double gap = 0;                  ///< gap between the sides of the joint [m, rad]
+  bool two_halves = false;         ///< half of its impulse acted where the step began
+  bool at_limit = false;           ///< true also beyond a limit
+  bool at_largest_torque = false;  ///< its spring gave its largest torque in the last step
 };
 
 /// A limit of a joint's coordinate: over a step of dt, sum_k weight_k V_k >= -room / dt. The
@@ -66,9 +79,12 @@ class ConstraintModel : public PlugIn {
  public:
   /// Returns the combinations at the present positions. Local, the same on all ranks.
   virtual std::vector<Combination> combinations() const = 0;
-  /// S1: changes V (stacked, of all dofs), which is about to move all solids from `time` by dt, as
-  /// if they had no midpoint corrections: who adds these asks for a `FreeRigidMotion`. Collective.
-  virtual ClosedMotion close(double time, double dt, Vector& velocity) = 0;
+  /// S1: changes V (stacked, of all dofs), which was found with the midpoint `correction` and is
+  /// about to move all solids from `time` by dt; `solved` is V before contact changed it. The
+  /// impulses belong to the motion without contact, since S1 drops what pushes solids out of one
+  /// another. Collective.
+  virtual ClosedMotion close(double time, double dt, const Vector& correction, const Vector& solved,
+                             Vector& velocity) = 0;
   /// Returns the limits at the present positions that motions with about the velocity V (by dof, of
   /// all solids) may meet within dt. Local, the same on all ranks.
   virtual std::vector<JointLimit> limits(double dt, const std::vector<double>& velocity) const = 0;
@@ -86,6 +102,12 @@ class ConstraintModel : public PlugIn {
   /// Returns the states of all coordinates, with the targets at `time`. Local, the same on all
   /// ranks.
   virtual std::vector<JointState> states(double time) const = 0;
+  /// Replaces the target of the scene from the next step on: q + (t - time) rate, by coordinate
+  /// [rad, m; their rates]. A program around a run calls it alike on all ranks, and again after a
+  /// restart: checkpoints do not keep it. Throws InputError if there is no such joint, if it is
+  /// free, or if it has another number of coordinates. Local.
+  virtual void set_target(const std::string& joint, double time, const std::vector<double>& q,
+                          const std::vector<double>& rate) = 0;
   /// Returns a description of the joints for `--explain`. Local.
   virtual std::string note() const = 0;
 };

@@ -5,10 +5,9 @@
 
 namespace lockstep {
 
-// Side interfaces that measure the work which the parts of a step do on the energy, called only if
-// an observer asks for it. An impulse works on the mean of the velocities before and after it, so
-// that the works of all impulses of a step add up, to round-off, to the change of the kinetic
-// energy.
+// Works that the parts of a step do on the energy, measured only if an observer asks for it. An
+// impulse works on the mean of the velocities before and after it, so that the works of all
+// impulses of a step add up, to round-off, to the change of the kinetic energy.
 
 /// A side of fluids: the works of what acts on u* one after another, on free faces.
 template <int dim>
@@ -30,17 +29,6 @@ struct SolidWork {
   double damping = 0;  ///< hardly ever above 0
   double control = 0;  ///< work of springs and dampers of joints
   double loads = 0;    ///< work of gravity and loads
-};
-
-/// A side of solids with other forces than loads.
-template <int dim>
-class WorkingSolids {
- public:
-  virtual ~WorkingSolids() = default;
-  /// Returns the works of the solids' forces in S2, over dt from `time`, which found `velocity`, on
-  /// bodies that move at `mean`; called before `set_velocity`. Global, collective.
-  virtual SolidWork solid_work(double time, double dt, const Vector& velocity,
-                               const Vector& mean) const = 0;
 };
 
 /// Budget of the energy of a step [J]: sources, change, sinks. Each term is measured where it

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -254,9 +256,14 @@ class FluidDiscretization : public PlugIn {
   virtual std::array<std::array<bool, 2>, dim> closed_sides() const { return {}; }
   /// Velocity of the wall at an end (0 lower, 1 upper) of an axis, along itself [m/s]. Local.
   virtual Point<dim> wall_velocity(int, int, double) const { return Point<dim>::Zero(); }
-  /// True if what leaves at one side comes in at another: then torques have no common origin.
-  /// Local.
-  virtual bool is_periodic() const { return false; }
+  /// Axes along which what leaves at one side comes in at the other; of solids, those that
+  /// `RepeatedSolids` repeats do. Default: none. The same on every rank. Local.
+  virtual std::array<bool, dim> periodic_axes() const { return {}; }
+  /// True if there is such an axis: then torques have no common origin. Local.
+  bool is_periodic() const {
+    const std::array<bool, dim> axes = periodic_axes();
+    return std::any_of(axes.begin(), axes.end(), [](bool one) { return one; });
+  }
   /// Returns the fluxes through its sides at `time`, one by one, those of sides that are shut then
   /// too: so that a run can say whose motion closed fluid has no room for. Local.
   virtual std::vector<PrescribedFlux> side_fluxes(double /*time*/) const { return {}; }

@@ -10,9 +10,9 @@ namespace lockstep {
 struct BoxFrame;      // output/frames.hpp
 struct SurfaceFrame;  // output/frames.hpp
 
-// Side interfaces of fluids (`side_of`) for audits, solvers and outputs. Viscosity has its own
-// (interfaces/viscosity.hpp), and so have the fluxes of the sides (prescribed_flux.hpp) and samples
-// (field_sampler.hpp).
+// Sides of fluids (FluidDiscretization::audit, ...) for audits, solvers and outputs. Viscosity has
+// its own (interfaces/viscosity.hpp), and so have the fluxes of the sides (prescribed_flux.hpp) and
+// samples (field_sampler.hpp).
 
 /// Momentum and energy of u*, for the ledger. Without it a run has no `momentum_error`.
 template <int dim>

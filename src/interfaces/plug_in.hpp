@@ -24,15 +24,4 @@ class PlugIn {
   PlugIn& operator=(const PlugIn&) = default;
 };
 
-/// A side interface of a plug-in, or null if it does without. An interface holds what every plug-in
-/// of its kind must write; what audits, solvers or outputs would like is asked for in this way.
-template <typename Side>
-const Side* side_of(const PlugIn& plug_in) {
-  return dynamic_cast<const Side*>(&plug_in);
-}
-template <typename Side>
-Side* side_of(PlugIn& plug_in) {
-  return dynamic_cast<Side*>(&plug_in);
-}
-
 }  // namespace lockstep

@@ -51,8 +51,6 @@ template <int dim>
 class SolidOutput;  // interfaces/solid_sides.hpp
 template <int dim>
 class VolumeSweeper;  // interfaces/volume_sweeper.hpp
-template <int dim>
-class WorkingSolids;  // interfaces/energy.hpp
 
 /// All solids of one kind (all rigid bodies, all deformables, ...): their unknowns, mass, forces
 /// and surfaces. Knows nothing of the fluid and nothing of other models.
@@ -159,7 +157,6 @@ class SolidModel : public PlugIn {
   virtual NonlinearSolids<dim>* nonlinear() { return nullptr; }  ///< null: not in this scene
   virtual const SolidOutput<dim>* output() const { return nullptr; }
   virtual const VolumeSweeper<dim>* sweeper() const { return nullptr; }
-  virtual const WorkingSolids<dim>* work() const { return nullptr; }  ///< null: all are loads
 };
 
 template <int dim>

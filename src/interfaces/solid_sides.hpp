@@ -1,4 +1,10 @@
 #pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interfaces/energy.hpp"
 #include "interfaces/solid.hpp"
 #include "motion/rotation.hpp"
 
@@ -9,8 +15,8 @@ struct SurfaceFrame;  // output/frames.hpp
 // Sides of solid models (SolidModel::audit, ...) for audits, solvers and outputs. The SolidSystem
 // asks each of its models and does without.
 
-/// Momentum, for the ledger and for the forces that are reported. Without it a run has no
-/// `momentum_error`, and the forces on these solids are zero in its tables.
+/// Momentum and work, for the ledger, the budget of energy and the forces that are reported.
+/// Without it a run has no `momentum_error`, and the forces on these solids are zero in its tables.
 template <int dim>
 class AuditedSolids {
  public:
@@ -25,6 +31,14 @@ class AuditedSolids {
   /// taken elsewhere on its path. Asked for before `set_velocity`. Global, collective.
   virtual AngularVector<dim> inner_angular_impulse(double) const {
     return AngularVector<dim>::Zero();
+  }
+  /// Returns the works of the solids' forces in S2, over dt from `time`, which found `velocity`, on
+  /// bodies that move at `mean`; called before `set_velocity`. Default, for models without other
+  /// forces than loads: nothing. Global, collective.
+  virtual std::optional<SolidWork> solid_work(double /*time*/, double /*dt*/,
+                                              const Vector& /*velocity*/,
+                                              const Vector& /*mean*/) const {
+    return {};
   }
 };
 
@@ -75,6 +89,13 @@ class JointableSolids {
   virtual std::string unjointable(int solid) const = 0;
 };
 
+/// A line after a step, for lines.csv.
+struct LineState {
+  std::string name;
+  double span = 0;                  ///< distance of its ends [m]
+  std::array<double, 2> tension{};  ///< at its ends [N]; negative: it pushes
+};
+
 /// Frames and figures that only pictures and tables show.
 template <int dim>
 class SolidOutput {
@@ -83,6 +104,8 @@ class SolidOutput {
   /// Appends meshes with fields beyond the surface, for frames: what is inside, stress and strain.
   /// Collective.
   virtual void add_frames(std::vector<SurfaceFrame>& frames) const = 0;
+  /// Returns the present state of each line, the same on all ranks. Local. Default: there are none.
+  virtual std::vector<LineState> line_states() const { return {}; }
   /// Elements whose implicit forces were changed to keep C definite, in the last step that used
   /// them; for the history. Global, local call.
   virtual GlobalIndex n_clamped_elements() const { return 0; }

@@ -11,7 +11,6 @@
 #include "base/wait_for_all.hpp"
 #include "base/xml_text.hpp"
 #include "coupling/automatic_coupling.hpp"
-#include "interfaces/periodic_fluid.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/shape_sizes.hpp"
 #include "parameters/source.hpp"
@@ -223,9 +222,8 @@ class SceneBuilder {
   void go_round_periodic_sides() {
     constexpr double cells_beyond = 4;  // surfaces farther outside of the domain act on no cell
     const FluidDiscretization<dim>* fluid = components_.fluid.get();
-    const auto* side = fluid ? side_of<PeriodicFluid<dim>>(*fluid) : nullptr;
-    if (side && fluid->is_periodic())
-      components_.solids->go_round(fluid->bounds(), side->periodic_axes(),
+    if (fluid && fluid->is_periodic())
+      components_.solids->go_round(fluid->bounds(), fluid->periodic_axes(),
                                    cells_beyond * fluid->smallest_length());
   }
 

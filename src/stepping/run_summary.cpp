@@ -74,12 +74,11 @@ void RunSummary::count(const SolveReport& s1, const SolveReport& f2, const Solve
   }
 }
 
-void RunSummary::count(const std::vector<JointState>& joints,
-                       const std::vector<char>& limited_torques) {
+void RunSummary::count(const std::vector<JointState>& joints) {
   const bool at_end = std::any_of(joints.begin(), joints.end(),
                                   [](const JointState& joint) { return !joint.two_halves; });
-  const bool limited = std::any_of(limited_torques.begin(), limited_torques.end(),
-                                   [](char one) { return one != 0; });
+  const bool limited = std::any_of(joints.begin(), joints.end(),
+                                   [](const JointState& joint) { return joint.at_largest_torque; });
   has_joints_ = true;
   end_impulses_ += at_end ? 1 : 0;
   limited_torques_ += limited ? 1 : 0;

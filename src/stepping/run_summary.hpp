@@ -41,7 +41,7 @@ class RunSummary {
     largest_angular_error_ = larger(report.angular_momentum_error, largest_angular_error_);
   }
   /// After a step.
-  void count(const std::vector<JointState>& joints, const std::vector<char>& limited_torques);
+  void count(const std::vector<JointState>& joints);
   /// Collective.
   nlohmann::ordered_json json(const nlohmann::ordered_json& header, const RunFacts& run,
                               const std::vector<StageTime>& stages, const Communicator& comm) const;

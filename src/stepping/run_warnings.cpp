@@ -5,7 +5,6 @@
 
 #include "coupling/solid_totals.hpp"
 #include "interfaces/liquid.hpp"
-#include "interfaces/periodic_fluid.hpp"
 
 namespace lockstep {
 
@@ -44,10 +43,9 @@ void RunWarnings<dim>::warn_of_periodic_sides(long long step, const Components<d
                                               const Log& log) {
   constexpr double round_off = 1e-6;  // part of the domain; a pile from side to side ends at both
   const FluidDiscretization<dim>& fluid = *components.fluid;
-  const auto* side = side_of<PeriodicFluid<dim>>(fluid);
-  if (of_periodic_sides_ || !side || !fluid.is_periodic())
+  if (of_periodic_sides_ || !fluid.is_periodic())
     return;
-  const std::array<bool, dim> periodic = side->periodic_axes();
+  const std::array<bool, dim> periodic = fluid.periodic_axes();
   const Box<dim> domain = fluid.bounds();
   const SolidSystem<dim>& all = *components.solids;
   int i = 0;

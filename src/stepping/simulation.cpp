@@ -7,9 +7,8 @@
 #include "base/errors.hpp"
 #include "base/signals.hpp"
 #include "coupling/solid_totals.hpp"
-#include "interfaces/limited_torques.hpp"
-#include "interfaces/line_tensions.hpp"
 #include "interfaces/liquid.hpp"
+#include "interfaces/solid_sides.hpp"
 #include "output/checkpoint.hpp"
 #include "output/run_record.hpp"
 #include "output/xdmf.hpp"
@@ -60,8 +59,8 @@ template <int dim>
 std::vector<LineState> line_states(const SolidSystem<dim>& solids) {
   std::vector<LineState> all;
   for (int m = 0; m < solids.n_models(); ++m) {
-    if (const auto* model = side_of<LineTensions>(solids.model(m))) {
-      for (const LineState& line : model->line_states())
+    if (const auto* output = solids.model(m).output()) {
+      for (const LineState& line : output->line_states())
         all.push_back(line);
     }
   }
@@ -338,24 +337,14 @@ bool Simulation<dim>::step() {
   return !is_within_step_;
 }
 
-namespace {
-/// By coordinate; none are where joints know nothing of it.
-std::vector<char> limited_torques(const ConstraintModel& joints, std::size_t n_coordinates) {
-  if (const auto* model = side_of<LimitedTorques>(joints))
-    return model->limited_torques();
-  return std::vector<char>(n_coordinates, 0);
-}
-}  // namespace
-
 template <int dim>
 void Simulation<dim>::write_rows() {
   const std::vector<SolidState<dim>> states = components_.solids->states();
   tables_.append(step_, *report_, states, step_seconds_);
   if (const ConstraintModel* joints = components_.solids->joints()) {
     const std::vector<JointState> coordinates = joints->states(report_->time);
-    const std::vector<char> limited = limited_torques(*joints, coordinates.size());
-    tables_.append_joints(step_, *report_, coordinates, limited);
-    summary_.count(coordinates, limited);
+    tables_.append_joints(step_, *report_, coordinates);
+    summary_.count(coordinates);
   }
   if (const std::vector<LineState> lines = line_states(*components_.solids); !lines.empty())
     tables_.append_lines(step_, *report_, lines);

@@ -7,7 +7,6 @@
 
 #include "base/shortened.hpp"
 #include "interfaces/liquid.hpp"
-#include "interfaces/periodic_fluid.hpp"
 
 namespace lockstep {
 namespace {
@@ -92,10 +91,9 @@ std::string periodic_warning(const SolidSystem<dim>& system,
            !system.repeated().includes(i);
   };
   const auto first = std::find_if(solids.begin(), solids.end(), is_free);
-  const auto* side = side_of<PeriodicFluid<dim>>(fluid);
-  if (first == solids.end() || !side || !fluid.is_periodic())
+  if (first == solids.end() || !fluid.is_periodic())
     return "";
-  const std::array<bool, dim> periodic = side->periodic_axes();
+  const std::array<bool, dim> periodic = fluid.periodic_axes();
   std::vector<char> axes;
   for (int a = 0; a < dim; ++a)
     if (periodic[a])

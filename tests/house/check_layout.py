@@ -43,12 +43,15 @@ FUNCTION = re.compile(r"^(?!const\b[^(]*=)[A-Za-z][^;={}()#]*?\b(\w+)\(([^;{}]*?
 MOST_HOMES = 2  # .cpp files that define functions of one class
 MOST_BASES = 4
 MOST_PARAMETERS = 6
+MOST_LINES = 500  # a class has: its declaration and its members in .cpp files
 COMMENT = re.compile(r"//.*")
 # A function, or a constructor, that a .cpp file defines at the start of a line: up to its parameters, and behind them.
 DEFINITION = re.compile(r"^[A-Za-z_][^;{}()=#]*?\b(~?\w+)\(", re.MULTILINE)
 BODY = re.compile(r"\s*(?:const)?\s*(?:noexcept)?\s*(?::[^{;]*)?\{")
 # The class of a member function whose definition begins a line.
 MEMBER = re.compile(r"^(?!template (?!<)|using |#|  )(?:[\w:<>,&*~\s\[\]]*?[\s&*])?([A-Z]\w*)(?:<[\w, ]*>)?::(?:~?\w+|operator[^\s(]+)\(", re.MULTILINE)
+OWNED = re.compile(r"^[A-Za-z_][^;{}()=#]*?\b([A-Z]\w*)(?:<[\w, ]*>)?::~?\w+\(", re.MULTILINE)
+DECLARED = re.compile(r"^(?:class|struct) (\w+)[^;{]*\{.*?^\};", re.MULTILINE | re.DOTALL)
 INHERITING = re.compile(r"^\s*(?:class|struct) (\w+)(?: final)?\s*:\s*([^;{]*)\{", re.MULTILINE)
 DECLARATION = re.compile(r"[\w>&*\]] (\w+)\(([^(){};]*(?:\([^()]*\)[^(){};]*)*)\)\s*(?:const)?\s*(?:noexcept)?\s*(?:override)?\s*(?:= 0)?\s*[;{]")
 PARAMETER = re.compile(r"^(?:const )?[\w:]+(?:<.*>)?(?:::\w+)?[\s&*]+(?:/\*)?\w*(?:\*/)?(?: = [^=]*)?$", re.DOTALL)
@@ -180,15 +183,15 @@ def listed(text):
     return [part.strip() for part in parts]
 
 
-def definitions(text):
-    """(name, parameters) of the functions that a .cpp file without comments defines at the start of a line."""
-    for match in DEFINITION.finditer(text):
+def definitions(text, pattern=DEFINITION):
+    """(match, end of its parameters) of what a .cpp file without comments defines at the start of a line by such a pattern."""
+    for match in pattern.finditer(text):
         end, depth = match.end(), 1
         while depth > 0 and end < len(text):
             depth += (text[end] == "(") - (text[end] == ")")
             end += 1
         if BODY.match(text, end):
-            yield match.group(1), listed(text[match.end():end - 1])
+            yield match, end
 
 
 def sizes(root):
@@ -199,7 +202,8 @@ def sizes(root):
         if path.suffix == ".cpp":
             for name in MEMBER.findall(text):
                 homes.setdefault((path.relative_to(root).parts[:2], name), set()).add(path)
-            for name, taken in definitions(text):
+            for match, end in definitions(text):
+                name, taken = match.group(1), listed(text[match.end():end - 1])
                 if len(taken) > MOST_PARAMETERS:
                     parameters[name] = max(parameters.get(name, 0), len(taken))
         for name, of in INHERITING.findall(text):
@@ -214,9 +218,23 @@ def sizes(root):
     return files, bases, parameters
 
 
+def class_lines(root):
+    """By name the lines of classes, which end where a line begins with their closing brace, as formatted code has it."""
+    lines = {}
+    for path in source_files(root, {".cpp", ".hpp"}, ["src", "packages", "drivers"]):
+        text = COMMENT.sub("", path.read_text())
+        room = path.relative_to(root).parts[:2]
+        pieces = [(match.group(1), match.start(), match.end()) for match in DECLARED.finditer(text)]
+        if path.suffix == ".cpp":
+            pieces += [(match.group(1), match.start(), text.find("\n}\n", end)) for match, end in definitions(text, OWNED)]
+        for name, begin, end in pieces:
+            lines[room, name] = lines.get((room, name), 0) + text.count("\n", begin, end) + 1
+    return {name: n for (_, name), n in sorted(lines.items(), key=lambda one: one[1])}
+
+
 def size_violations(root):
-    rules = [(".cpp files", MOST_HOMES), ("bases", MOST_BASES), ("parameters", MOST_PARAMETERS)]
-    for (what, most), found in zip(rules, sizes(root)):
+    rules = [(".cpp files", MOST_HOMES), ("bases", MOST_BASES), ("parameters", MOST_PARAMETERS), ("lines", MOST_LINES)]
+    for (what, most), found in zip(rules, (*sizes(root), class_lines(root))):
         for name, n in sorted(found.items()):
             if n > most:
                 yield f"{name} has {n} {what}, more than {most}"

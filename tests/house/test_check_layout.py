@@ -71,6 +71,13 @@ class Rules(unittest.TestCase):
         self.assertEqual(self.found({**files, "packages/mac/c.cpp": "template void Fluid<2>::g();\n"}), [])
         self.assertEqual(len(self.found({**files, "packages/mac/c.cpp": "const Name& Fluid<dim>::g() const {\n}\n"})), 1)
 
+    def test_long_classes(self):
+        def tree(n):
+            members = "".join(f"template <int dim>\nvoid Fluid<dim>::f{i}() {{\n  run();\n}}\n" for i in range(n))
+            return {"packages/mac/a.hpp": "class Fluid {\n  int a;\n};\n", "packages/mac/a.cpp": members + "template void Fluid<2>::f0();\n"}
+        self.assertEqual(self.found(tree(160)), [])
+        self.assertEqual(len(self.found(tree(170))), 1)
+
     def test_bases(self):
         self.assertEqual(self.found({"src/base/a.hpp": "class A : public B<1, 2>, public C, public D, E {\n};\n"}), [])
         self.assertEqual(len(self.found({"src/base/a.hpp": "class A : public B, public C, public D, public E, F {\n};\n"})), 1)

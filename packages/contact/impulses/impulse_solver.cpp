@@ -25,6 +25,37 @@ Eigen::Matrix<double, dim, dim> frame_of(const Point<dim>& normal) {
   }
   return frame;
 }
+
+/// The row of a joint limit with these weights by id; without a response if nothing can move.
+template <int dim>
+LimitImpulses::Row limit_row(const Mobility<dim>& mobility, bool responds,
+                             const std::map<int, double>& weights) {
+  std::map<int, double> response;
+  double of_parts = 0, of_all = 0;
+  for (const auto& [id, weight] : weights) {
+    const auto add = [&, id = id, weight = weight](int other, double value) {
+      response[other] += weight * value;
+      if (other == id)
+        of_parts += weight * weight * value;
+    };
+    if (!responds) {
+      for (const auto& [other, value] : mobility.row(id))
+        add(other, value);
+      continue;
+    }
+    for (int other = 0; other < mobility.n_active(); ++other)
+      add(other, mobility.column(id)[other]);
+  }
+  for (const auto& [id, velocity] : response) {
+    const auto weight = weights.find(id);
+    of_all += weight == weights.end() ? 0 : weight->second * velocity;
+  }
+  LimitImpulses::Row row;
+  row.weights.assign(weights.begin(), weights.end());
+  if (of_all > unmovable * of_parts)
+    row.response.assign(response.begin(), response.end());
+  return row;
+}
 }  // namespace
 
 template <int dim>
@@ -167,38 +198,18 @@ bool ImpulseSolver<dim>::can_move(const Contact<dim>& contact) {
 /// for held dofs.
 template <int dim>
 LimitImpulses::Row ImpulseSolver<dim>::row_of(const Terms& terms) {
-  LimitImpulses::Row row;
-  std::map<int, double> weights, response;
+  std::map<int, double> weights;
+  double least = 0;
   for (const auto& [dof, weight] : shapes_.resolved(terms)) {
     if (!responds())
       weights[static_cast<int>(dof)] += weight;
     else if (mobility_.is_held(static_cast<int>(dof)))
-      row.least -= weight * velocity_[dof];
+      least -= weight * velocity_[dof];
     else
       weights[activate(static_cast<int>(dof))] += weight;
   }
-  double of_parts = 0, of_all = 0;
-  for (const auto& [id, weight] : weights) {
-    const auto add = [&, id = id, weight = weight](int other, double value) {
-      response[other] += weight * value;
-      if (other == id)
-        of_parts += weight * weight * value;
-    };
-    if (!responds()) {
-      for (const auto& [other, value] : mobility_.row(id))
-        add(other, value);
-      continue;
-    }
-    for (int other = 0; other < mobility_.n_active(); ++other)
-      add(other, mobility_.column(id)[other]);
-  }
-  for (const auto& [id, velocity] : response) {
-    const auto weight = weights.find(id);
-    of_all += weight == weights.end() ? 0 : weight->second * velocity;
-  }
-  row.weights.assign(weights.begin(), weights.end());
-  if (of_all > unmovable * of_parts)
-    row.response.assign(response.begin(), response.end());
+  LimitImpulses::Row row = limit_row<dim>(mobility_, responds(), weights);
+  row.least = least;
   return row;
 }
 

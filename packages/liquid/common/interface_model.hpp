@@ -93,24 +93,19 @@ class InterfaceModel : public PlugIn {
   virtual LiquidLedger ledger() const = 0;
   /// Drops that have left the interface; null: none ever does. Local.
   virtual Drops<dim>* drops() const { return nullptr; }
+  /// True if it can live on other tiles. Default: it cannot; then tiles stay as they are: there can
+  /// be no "Moving Tiles", and ranks keep those that they have, however uneven the work at solids
+  /// becomes. Local.
+  virtual bool migrates() const { return false; }
+  /// Moves the fields on the tiles of the domain, which are about to change between two steps; new
+  /// tiles are dry. Returns the action that is due once the domain has its new grid. Collective.
+  virtual std::function<void()> migrate(const TileMigration<dim>&) { return {}; }
   /// Measures the volume and target of the liquid in some stored cells (1); after a step.
   /// Collective. Default: throws InputError.
   virtual WatchedLiquid liquid_in(const std::vector<char>& /*cells*/) const {
     throw InputError(fmt::format(
         "The interface \"{}\" cannot tell how much is where; leave out \"Watch\".", this->name()));
   }
-};
-
-/// A side interface of models that can live on other tiles. With one that does without, tiles stay
-/// as they are: there can be no "Moving Tiles", and ranks keep those that they have, however uneven
-/// the work at solids becomes.
-template <int dim>
-class MigratingInterface {
- public:
-  virtual ~MigratingInterface() = default;
-  /// Moves the fields on the tiles of the domain, which are about to change between two steps; new
-  /// tiles are dry. Returns the action that is due once the domain has its new grid. Collective.
-  virtual std::function<void()> migrate(const TileMigration<dim>&) = 0;
 };
 
 /// Interface models by name. They are built for a domain, which must outlive them.

@@ -13,6 +13,23 @@ constexpr int shifted_layers = 3;
 /// Total volume defect, as a part of the components' targets, above which other components take it
 /// over [1].
 constexpr double negligible_defect = 1e-6;
+
+/// Shifts that would give components with these volumes their targets [m], were nothing in the way.
+std::vector<double> wanted_shifts(VolumeCorrection correction, const std::vector<double>& targets,
+                                  const GroupVolumes& now) {
+  std::vector<double> shift(targets.size(), 0.0);
+  const auto ratio = [](double missing, double area) { return area > 0 ? missing / area : 0; };
+  if (correction == VolumeCorrection::component)
+    for (std::size_t group = 0; group < targets.size(); ++group)
+      shift[group] = ratio(targets[group] - now.volume[group], now.area[group]);
+  if (correction == VolumeCorrection::global) {
+    const double target = std::accumulate(targets.begin(), targets.end(), 0.0);
+    const double volume = std::accumulate(now.volume.begin(), now.volume.end(), 0.0);
+    const double area = std::accumulate(now.area.begin(), now.area.end(), 0.0);
+    shift.assign(targets.size(), ratio(target - volume, area));
+  }
+  return shift;
+}
 }  // namespace
 
 void declare_volume_correction(ParameterList& list) {
@@ -31,28 +48,12 @@ VolumeParameters read_volume_correction(const ParameterList& list) {
   return parameters;
 }
 
-template <int dim>
-std::vector<double> VolumeLedger<dim>::wanted_shifts(const GroupVolumes& now) const {
-  std::vector<double> shift(groups_.n, 0.0);
-  const auto ratio = [](double missing, double area) { return area > 0 ? missing / area : 0; };
-  if (parameters_.correction == VolumeCorrection::component)
-    for (int group = 0; group < groups_.n; ++group)
-      shift[group] = ratio(targets_.of_group[group] - now.volume[group], now.area[group]);
-  if (parameters_.correction == VolumeCorrection::global) {
-    const double target = std::accumulate(targets_.of_group.begin(), targets_.of_group.end(), 0.0);
-    const double volume = std::accumulate(now.volume.begin(), now.volume.end(), 0.0);
-    const double area = std::accumulate(now.area.begin(), now.area.end(), 0.0);
-    shift.assign(groups_.n, ratio(target - volume, area));
-  }
-  return shift;
-}
-
 /// Bodies of a few cells cannot be shifted by what they lack; until they can, others of the same
 /// closed space have it.
 template <int dim>
 std::vector<double> VolumeLedger<dim>::limited_shifts(const SolidCells<dim>& solids,
                                                       const std::vector<double>& left) const {
-  std::vector<double> shift = wanted_shifts(volumes_);
+  std::vector<double> shift = wanted_shifts(parameters_.correction, targets_.of_group, volumes_);
   double total_defect = 0, target = 0;
   std::vector<double> defect(groups_.n);
   for (int body = 0; body < groups_.n; ++body) {
@@ -66,7 +67,7 @@ std::vector<double> VolumeLedger<dim>::limited_shifts(const SolidCells<dim>& sol
       !(total_defect > negligible_defect * std::abs(target)))
     return shift;
   const CellGroups& spaces = find_closed_spaces(domain_, solids);
-  const std::vector<int> space = places_among(spaces, groups_);
+  const std::vector<int> space = places_among(domain_, spaces, groups_);
   std::vector<double> defect_in(spaces.n, 0.0), area_in(spaces.n, 0.0);
   const auto stands_in = [&](int body) { return std::abs(shift[body]) < left[body]; };
   for (int body = 0; body < groups_.n; ++body) {
@@ -130,7 +131,7 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
       regroup(solids, solids, phi, {}, 1);
       const std::vector<double> left_before = left;
       left.clear();
-      for (const int before : places_among(shifted, groups_))
+      for (const int before : places_among(domain_, shifted, groups_))
         left.push_back(left_before[before]);
     } else {
       volumes_ = measure_.measure(phi, groups_);
@@ -139,8 +140,6 @@ VolumeShift VolumeLedger<dim>::correct(const SolidCells<dim>& solids, double cfl
   return done;
 }
 
-template std::vector<double> VolumeLedger<2>::wanted_shifts(const GroupVolumes&) const;
-template std::vector<double> VolumeLedger<3>::wanted_shifts(const GroupVolumes&) const;
 template std::vector<double> VolumeLedger<2>::limited_shifts(const SolidCells<2>&,
                                                              const std::vector<double>&) const;
 template std::vector<double> VolumeLedger<3>::limited_shifts(const SolidCells<3>&,

@@ -48,7 +48,69 @@ Overlaps gather(const Communicator& comm, const Overlaps& mine) {
     all[{static_cast<int>(packed[i]), static_cast<int>(packed[i + 1])}] += packed[i + 2];
   return all;
 }
+
+/// The body that a cell or, of those beside it, the one nearest to the surface belongs to, -1:
+/// none. A cell whose centre a solid holds has its fluid from those beside it.
+template <int dim>
+int body_at(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+            const std::vector<int>& of_cell, const CellField& phi, int cell) {
+  int body = of_cell[cell];
+  if (body >= 0)
+    return body;
+  double nearest = 0;
+  for (int i = 0; i < 2 * dim; ++i) {
+    const int other = solids.is_fluid(cell) ? solids.seen_neighbor(grid, cell, i / 2, i % 2)
+                                            : grid.neighbor(cell, i / 2, i % 2);
+    if (other < 0 || of_cell[other] < 0)
+      continue;
+    const double distance = std::abs(phi[other]);
+    if (body < 0 || distance < nearest || (distance == nearest && of_cell[other] < body)) {
+      body = of_cell[other];
+      nearest = distance;
+    }
+  }
+  return body;
+}
+
+/// Returns the places of vanished components, of all that `places` has by cell; for those that
+/// surfaces passed over, the components around.
+template <int dim>
+std::vector<int> places_of(const MacDomain<dim>& domain, std::vector<int> places,
+                           const std::vector<char>& vanished, const SolidCells<dim>& before,
+                           const CellField& phi, const std::vector<char>& swept) {
+  for (int& group : places)
+    if (group >= 0 && !vanished[group])
+      group = -1;
+  double n_swept = 0;
+  for (std::size_t cell = 0; cell < swept.size(); ++cell)
+    n_swept += swept[cell] && places[cell] >= 0;
+  if (sum_all(domain.grid.comm(), n_swept) == 0)
+    return places;
+  spread_labels(domain, before, phi, giving_reach, places);
+  for (std::size_t cell = 0; cell < swept.size(); ++cell)
+    if (swept[cell])
+      places[cell] = -1;
+  return places;
+}
 }  // namespace
+
+template <int dim>
+std::vector<int> places_among(const MacDomain<dim>& domain, const CellGroups& spaces,
+                              const CellGroups& bodies) {
+  if (spaces.n == 1)
+    return std::vector<int>(bodies.n, 0);
+  Overlaps mine;
+  std::pair<int, int> last{-1, -1};
+  domain.grid.for_each_owned_cell([&](int cell) {
+    const std::pair<int, int> pair{bodies.of_cell[cell], spaces.of_cell[cell]};
+    if (pair.first >= 0 && pair != last)
+      mine[last = pair] = 1;
+  });
+  std::vector<int> space(bodies.n, 0);
+  for (const auto& [pair, n] : gather(domain.grid.comm(), mine))
+    space[pair.first] = pair.second;
+  return space;
+}
 
 template <int dim>
 VolumeLedger<dim>::VolumeLedger(const MacDomain<dim>& domain, const VolumeParameters& parameters)
@@ -75,29 +137,6 @@ void VolumeLedger<dim>::restore(const SolidCells<dim>& solids, const CellField& 
   targets_ = targets;
 }
 
-/// The body that a cell or, of those beside it, the one nearest to the surface belongs to, -1:
-/// none. A cell whose centre a solid holds has its fluid from those beside it.
-template <int dim>
-int VolumeLedger<dim>::body_at(const SolidCells<dim>& solids, const CellField& phi,
-                               int cell) const {
-  int body = groups_.of_cell[cell];
-  if (body >= 0)
-    return body;
-  double nearest = 0;
-  for (int i = 0; i < 2 * dim; ++i) {
-    const int other = solids.is_fluid(cell) ? solids.seen_neighbor(domain_.grid, cell, i / 2, i % 2)
-                                            : domain_.grid.neighbor(cell, i / 2, i % 2);
-    if (other < 0 || groups_.of_cell[other] < 0)
-      continue;
-    const double distance = std::abs(phi[other]);
-    if (body < 0 || distance < nearest || (distance == nearest && groups_.of_cell[other] < body)) {
-      body = groups_.of_cell[other];
-      nearest = distance;
-    }
-  }
-  return body;
-}
-
 template <int dim>
 void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField& phi,
                                  const InterfaceStep<dim>& step) {
@@ -115,7 +154,7 @@ void VolumeLedger<dim>::flow_out(const SolidCells<dim>& solids, const CellField&
         const double wet = std::clamp(0.5 - phi[cell] / h, 0.0, 1.0);
         const int face = end == 0 ? cell : grid.neighbor(cell, axis, 1);
         const double open = wet > 0 ? step.open_part(axis, face) : 0;
-        const int body = open > 0 ? body_at(solids, phi, cell) : -1;
+        const int body = open > 0 ? body_at(grid, solids, groups_.of_cell, phi, cell) : -1;
         if (body < 0)
           return;
         const double flux =
@@ -223,32 +262,13 @@ void VolumeLedger<dim>::regroup(const SolidCells<dim>& before, const SolidCells<
       vanished[old] = 0;  // the rest of it has gone through the side
   double unassigned = 0;
   if (std::count(vanished.begin(), vanished.end(), 1) > 0)
-    unassigned = give_to_nearest(solids, phi, groups, places_of(vanished, before, phi, swept),
+    unassigned = give_to_nearest(solids, phi, groups,
+                                 places_of(domain_, groups_.of_cell, vanished, before, phi, swept),
                                  vanished, target);
   groups_ = std::move(groups);
   targets_.of_group = std::move(target);
   is_open_ = std::move(is_open);
   share_unassigned(solids, unassigned);
-}
-
-template <int dim>
-std::vector<int> VolumeLedger<dim>::places_of(const std::vector<char>& vanished,
-                                              const SolidCells<dim>& before, const CellField& phi,
-                                              const std::vector<char>& swept) const {
-  std::vector<int> places = groups_.of_cell;
-  for (int& group : places)
-    if (group >= 0 && !vanished[group])
-      group = -1;
-  double n_swept = 0;
-  for (std::size_t cell = 0; cell < swept.size(); ++cell)
-    n_swept += swept[cell] && places[cell] >= 0;
-  if (sum_all(domain_.grid.comm(), n_swept) == 0)
-    return places;
-  spread_labels(domain_, before, phi, giving_reach, places);
-  for (std::size_t cell = 0; cell < swept.size(); ++cell)
-    if (swept[cell])
-      places[cell] = -1;
-  return places;
 }
 
 template <int dim>
@@ -280,24 +300,6 @@ double VolumeLedger<dim>::give_to_nearest(const SolidCells<dim>& solids, const C
 }
 
 template <int dim>
-std::vector<int> VolumeLedger<dim>::places_among(const CellGroups& spaces,
-                                                 const CellGroups& bodies) const {
-  if (spaces.n == 1)
-    return std::vector<int>(bodies.n, 0);
-  Overlaps mine;
-  std::pair<int, int> last{-1, -1};
-  domain_.grid.for_each_owned_cell([&](int cell) {
-    const std::pair<int, int> pair{bodies.of_cell[cell], spaces.of_cell[cell]};
-    if (pair.first >= 0 && pair != last)
-      mine[last = pair] = 1;
-  });
-  std::vector<int> space(bodies.n, 0);
-  for (const auto& [pair, n] : gather(domain_.grid.comm(), mine))
-    space[pair.first] = pair.second;
-  return space;
-}
-
-template <int dim>
 double VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGroups& groups,
                                     const std::vector<int>& places,
                                     const std::vector<char>& unassigned,
@@ -309,7 +311,7 @@ double VolumeLedger<dim>::share_out(const SolidCells<dim>& solids, const CellGro
     if (old >= 0 && unassigned[old] && solids.is_fluid(cell))
       of_old[{old, spaces.of_cell[cell]}] += 1;
   });
-  const std::vector<int> space = places_among(spaces, groups);
+  const std::vector<int> space = places_among(domain_, spaces, groups);
   std::vector<double> volume_in_space(spaces.n, 0.0);
   for (int group = 0; group < groups.n; ++group)
     volume_in_space[space[group]] += volumes_.volume[group];
@@ -431,7 +433,7 @@ std::vector<double> VolumeLedger<dim>::take_drops(const SolidCells<dim>& solids,
     return parts;
 
   const CellGroups& spaces = find_closed_spaces(domain_, solids);
-  const std::vector<int> space = places_among(spaces, groups_);
+  const std::vector<int> space = places_among(domain_, spaces, groups_);
   std::vector<double> wanted_in(spaces.n, 0), there(spaces.n, 0);
   for (const int cell : cells)
     if (nearest[cell] < 0 && spaces.of_cell[cell] >= 0)
@@ -466,6 +468,8 @@ void VolumeLedger<dim>::give_drops(const std::vector<int>& cells,
     targets_.of_group[body] += given[body];
 }
 
+template std::vector<int> places_among(const MacDomain<2>&, const CellGroups&, const CellGroups&);
+template std::vector<int> places_among(const MacDomain<3>&, const CellGroups&, const CellGroups&);
 template class VolumeLedger<2>;
 template class VolumeLedger<3>;
 

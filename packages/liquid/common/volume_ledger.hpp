@@ -88,7 +88,6 @@ class VolumeLedger {
 
  private:
   CellGroups find(const SolidCells<dim>& solids, const CellField& phi) const;
-  int body_at(const SolidCells<dim>& solids, const CellField& phi, int cell) const;
   /// Gives a volume without a component in its closed space, as that of water between bodies, to
   /// all components by their volumes, and takes from them what has come to be loose, so that the
   /// sum of all targets stays. With shells, through which nothing may go, it is lost.
@@ -96,10 +95,6 @@ class VolumeLedger {
   /// `inherit` where the list of boxes is still good.
   void regroup(const SolidCells<dim>& before, const SolidCells<dim>& solids, const CellField& phi,
                const std::vector<char>& swept, int reach);
-  /// Returns the places of vanished components; for those that surfaces passed over, the components
-  /// around.
-  std::vector<int> places_of(const std::vector<char>& vanished, const SolidCells<dim>& before,
-                             const CellField& phi, const std::vector<char>& swept) const;
   /// `places`: old bodies that have vanished. Returns what `share_out` does.
   double give_to_nearest(const SolidCells<dim>& solids, const CellField& phi,
                          const CellGroups& groups, const std::vector<int>& places,
@@ -109,9 +104,6 @@ class VolumeLedger {
   double share_out(const SolidCells<dim>& solids, const CellGroups& groups,
                    const std::vector<int>& places, const std::vector<char>& unassigned,
                    std::vector<double>& target);
-  /// Returns the group that each component is in: a closed space, or an earlier component.
-  std::vector<int> places_among(const CellGroups& spaces, const CellGroups& bodies) const;
-  std::vector<double> wanted_shifts(const GroupVolumes& now) const;
   std::vector<double> limited_shifts(const SolidCells<dim>& solids,
                                      const std::vector<double>& left) const;
 
@@ -125,5 +117,11 @@ class VolumeLedger {
   /// that `inherit` finds. Empty: none.
   std::vector<double> is_open_;
 };
+
+/// Returns the group that each component is in: a closed space, or an earlier component.
+/// Collective.
+template <int dim>
+std::vector<int> places_among(const MacDomain<dim>& domain, const CellGroups& spaces,
+                              const CellGroups& bodies);
 
 }  // namespace lockstep

@@ -26,7 +26,7 @@ VolumeOfFluidParameters read_volume_of_fluid_parameters(const ParameterList& lis
 /// these fractions stand for. The volume defects of moving solids and removed fragments are kept
 /// where they arise, and the liquid components there take them back.
 template <int dim>
-class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim> {
+class VolumeOfFluid : public InterfaceModel<dim> {
  public:
   using typename InterfaceModel<dim>::Surface;
 
@@ -35,6 +35,7 @@ class VolumeOfFluid : public InterfaceModel<dim>, public MigratingInterface<dim>
   std::string name() const override { return "volume of fluid"; }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
+  bool migrates() const override { return true; }
   std::function<void()> migrate(const TileMigration<dim>& migration) override;
 
   void initialise(const SignedDistance<dim>& distance, const Surface& surface) override;

@@ -34,7 +34,7 @@ LevelSetParameters read_level_set_parameters(const ParameterList& list);
 /// Level set: phi is a signed distance at cell centres, advected along rays and redistanced;
 /// particles, if there are any, correct it (Enright et al. 2002).
 template <int dim>
-class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
+class LevelSet : public InterfaceModel<dim> {
  public:
   using typename InterfaceModel<dim>::Surface;
 
@@ -45,6 +45,7 @@ class LevelSet : public InterfaceModel<dim>, public MigratingInterface<dim> {
   }
   void save(CheckpointWriter& checkpoint) const override;
   void load(const CheckpointReader& checkpoint) override;
+  bool migrates() const override { return true; }
   std::function<void()> migrate(const TileMigration<dim>& migration) override;
 
   void initialise(const SignedDistance<dim>& distance, const Surface& surface) override;

@@ -94,7 +94,7 @@ template <int dim>
 MacTiles<dim>::MacTiles(const ParameterList& fluid, MacFlow<dim>& flow) : flow_(flow) {
   if (!fluid.isSublist("Moving Tiles"))
     return;
-  check_input(!flow_.liquid || migrating_interface(),
+  check_input(!flow_.liquid || flow_.liquid->interface().migrates(),
               "The interface \"{}\" cannot follow \"Moving Tiles\"; leave them out.",
               flow_.liquid ? flow_.liquid->interface().name() : "");
   moving_.emplace(fluid,
@@ -114,11 +114,6 @@ typename MovingTiles<dim>::Present MacTiles<dim>::present(const GridState<dim>& 
     present.band = (1 - 1e-6) * flow_.liquid->interface().band(0) * flow_.domain.spacing();
   }
   return present;
-}
-
-template <int dim>
-MigratingInterface<dim>* MacTiles<dim>::migrating_interface() {
-  return side_of<MigratingInterface<dim>>(flow_.liquid->interface());
 }
 
 template <int dim>
@@ -147,7 +142,7 @@ template <int dim>
 bool MacTiles<dim>::share_work() {
   const Communicator& comm = flow_.domain.grid.comm();
   if (comm->getSize() == 1 || !(flow_.geometry.state.surface || flow_.liquid) ||
-      steps_to_sharing_ > 0 || (flow_.liquid && !migrating_interface()))
+      steps_to_sharing_ > 0 || (flow_.liquid && !flow_.liquid->interface().migrates()))
     return false;
   constexpr int steps_between = 20;
   steps_to_sharing_ = steps_between;
@@ -212,7 +207,7 @@ void MacTiles<dim>::regrid(const TileOwners& owners) {
                    [](char state) { return static_cast<CellState>(state); });
   }
   const std::function<void()> finish_liquid =
-      flow_.liquid ? migrating_interface()->migrate(migration) : std::function<void()>();
+      flow_.liquid ? flow_.liquid->interface().migrate(migration) : std::function<void()>();
   flow_.geometry = {};
   flow_.forget_speed();
   flow_.ray_halo.forget();

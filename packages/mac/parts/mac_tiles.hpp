@@ -48,7 +48,6 @@ class MacTiles {
   void regrid(const TileOwners& owners);
   void rest_at_band_edge();
   /// Interface of the liquid; null: it cannot live on other tiles.
-  MigratingInterface<dim>* migrating_interface();
 
   MacFlow<dim>& flow_;
   std::optional<MovingTiles<dim>> moving_;  ///< none: all tiles exist, always

@@ -4,8 +4,8 @@
 
 #include "base/errors.hpp"
 #include "interfaces/constraint.hpp"
-#include "interfaces/line_tensions.hpp"
 #include "interfaces/solid.hpp"
+#include "interfaces/solid_sides.hpp"
 #include "stepping/report/step_report.hpp"
 
 namespace lockstep {
@@ -290,7 +290,7 @@ std::vector<TableColumn<JointRow<dim>>> joint_columns() {
        {{"at_limit", "1", "1: the coordinate is at a limit, or beyond"},
         [](const Row& row) { return row.joint.at_limit ? 1 : 0; }},
        {{"limited", "1", "1: the torque is the largest that control may give"},
-        [](const Row& row) { return row.limited ? 1 : 0; }}});
+        [](const Row& row) { return row.joint.at_largest_torque ? 1 : 0; }}});
   return columns;
 }
 

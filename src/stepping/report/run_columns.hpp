@@ -49,7 +49,6 @@ struct JointRow {
   long long step;
   const StepReport<dim>& report;
   const JointState& joint;
-  bool limited;  ///< its torque was the largest
 };
 
 /// Source of a row of lines.csv: a step and a line.

@@ -1,8 +1,8 @@
 #include "stepping/report/run_tables.hpp"
 
 #include "interfaces/constraint.hpp"
-#include "interfaces/line_tensions.hpp"
 #include "interfaces/solid.hpp"
+#include "interfaces/solid_sides.hpp"
 
 namespace lockstep {
 namespace {
@@ -70,11 +70,10 @@ void RunTables<dim>::append(long long step, const StepReport<dim>& report,
 
 template <int dim>
 void RunTables<dim>::append_joints(long long step, const StepReport<dim>& report,
-                                   const std::vector<JointState>& joints,
-                                   const std::vector<char>& limited) {
+                                   const std::vector<JointState>& joints) {
   std::vector<JointRow<dim>> rows;
-  for (std::size_t k = 0; k < joints.size(); ++k)
-    rows.push_back({step, report, joints[k], limited[k] != 0});
+  for (const JointState& joint : joints)
+    rows.push_back({step, report, joint});
   joints_->append(rows);
 }
 

@@ -26,9 +26,8 @@ class RunTables {
   void append(long long step, const StepReport<dim>& report,
               const std::vector<SolidState<dim>>& states, double wall_seconds);
   /// Likewise. Only with joints.
-  /// `limited`: by coordinate, whether its torque was the largest.
   void append_joints(long long step, const StepReport<dim>& report,
-                     const std::vector<JointState>& joints, const std::vector<char>& limited);
+                     const std::vector<JointState>& joints);
   /// Likewise. Only with lines.
   void append_lines(long long step, const StepReport<dim>& report,
                     const std::vector<LineState>& lines);

@@ -29,7 +29,7 @@ struct StepReport {
   /// masses.
   Momentum<dim> transport_change;
   /// Numerical torques over dt, see AuditedCoupling::lumping_torque_error and
-  /// SolidSystem::implicit_impulse.
+  /// implicit_impulse.
   AngularVector<dim> lumping_torque_error = AngularVector<dim>::Zero();
   AngularVector<dim> linearisation_impulse = AngularVector<dim>::Zero();
   double fluid_kinetic_energy = 0, solid_kinetic_energy = 0, elastic_energy = 0;  ///< [J]

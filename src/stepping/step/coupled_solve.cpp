@@ -3,7 +3,6 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 
-#include "base/errors.hpp"
 #include "coupling/solid_totals.hpp"
 #include "linear/null_space.hpp"
 
@@ -17,15 +16,6 @@ CoupledSolve<dim>::CoupledSolve(Components<dim>& components, CoupledSystem<dim>&
       options_(options),
       gas_(components),
       timers_(timers) {}
-
-template <int dim>
-void CoupledSolve<dim>::check_start(double time) const {
-  // Motions that begin at rest do so but for round-off.
-  const double negligible = 1e-12 * components_.fluid->fluid_volume();  // a second
-  const std::string impossible =
-      system_.impossible_flow(time, components_.solids->constraints(time, time), negligible);
-  check_input(impossible.empty(), "At the start: {}", impossible);
-}
 
 template <int dim>
 CoupledSolution CoupledSolve<dim>::solve(const StepContext<dim>& context,

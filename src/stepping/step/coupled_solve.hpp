@@ -28,8 +28,6 @@ class CoupledSolve {
   /// Throws InputError if the fluid has gas that the coupling does not know.
   CoupledSolve(Components<dim>& components, CoupledSystem<dim>& system,
                const CoupledSolveOptions& options, StageTimers& timers);
-  /// Throws InputError if what is prescribed at the start of a run has no solution. Collective.
-  void check_start(double time) const;
 
   /// One linear solve with the explicit `momentum` M_S V_S*; `name` is for messages. It begins at
   /// `nearby`, the unknowns of a similar solve; null: at the last step's. Throws SolveError.
@@ -46,8 +44,6 @@ class CoupledSolve {
   /// block the same motions as contacts, and the solve does not tell which bears what. Then contact
   /// acts on V_S* alone. The same on all ranks.
   bool holds_contacts() const;
-  /// True if these contacts leave surfaces that may still pass through one another: soft ones.
-  bool leaves_impacts() const;
   /// Returns the contacts of the velocities that solids with `momentum` have if the fluid gives
   /// them what it gives at rest, or gave soft ones in the last step, in the response of
   /// `contact_response`. Collective.

@@ -101,7 +101,7 @@ struct FirstKick {
 
 /// A correction without what belongs to bodies whose joints could not be closed; null: none is
 /// left. Their momenta would keep some of it through the turns that kept them open.
-RCP<const Vector> of_closed(const ClosedFreeMotion& motion) {
+RCP<const Vector> of_closed(const ClosedMotion& motion) {
   if (motion.correction.is_null() || motion.at_end.is_null())
     return motion.correction;
   const auto kept = rcp(new Vector(*motion.correction, Teuchos::Copy));

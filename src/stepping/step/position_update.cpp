@@ -41,16 +41,6 @@ void add_last(const ContactReport<dim>& last, ContactReport<dim>& contact) {
   contact.deepest_overlap = std::max(contact.deepest_overlap, last.deepest_overlap);
 }
 
-/// Closes the joints of a motion that was found with `correction`, by changing its velocity.
-ClosedFreeMotion closed_flight(ConstraintModel& joints, const StepTime& step,
-                               const Vector& correction, const Vector& solved, Vector& velocity) {
-  if (auto* const free_motions = side_of<FreeRigidMotion>(joints))
-    return free_motions->close_free_motion(step.begin, step.dt, correction, solved, velocity);
-  ClosedFreeMotion motion;
-  motion.constraint_error = joints.close(step.begin, step.dt, velocity).constraint_error;
-  return motion;
-}
-
 }  // namespace
 
 template <int dim>
@@ -125,7 +115,7 @@ void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& fo
     found.path.is_converged = settled.is_settled;
     add_last(settled.contact, found.path.contact);
   } else if (components_.contact && solids.has_unknowns() &&
-             (!solve_.holds_contacts() || solve_.leaves_impacts())) {
+             (!solve_.holds_contacts() || has_soft_solids(*components_.solids))) {
     add_last(components_.contact->resolve(solids, ContactPhase::position, dt, *found.velocity,
                                           joint_response<dim>(solids, context.dt)),
              found.path.contact);
@@ -160,12 +150,12 @@ SolidPath<dim> PositionUpdate<dim>::find_with_joints(StepContext<dim> context,
     // Solutions may share it.
     found.velocity = rcp(new Vector(*found.velocity, Teuchos::Copy));
     found.path.velocity = found.velocity;
-    return closed_flight(*solids.joints(), context.step, correction, *found.solved,
-                         *found.velocity);
+    return solids.joints()->close(context.step.begin, context.step.dt, correction, *found.solved,
+                                  *found.velocity);
   };
   const RCP<const Vector> correction = solid_forces_.midpoint_correction(context.dt);
   Found found = find_once(context, drag, correction, nullptr);
-  ClosedFreeMotion motion = close(*correction, found);
+  ClosedMotion motion = close(*correction, found);
   if (!motion.constraint_error.is_null()) {
     const Found first = found;
     context.constraints =
@@ -223,7 +213,7 @@ ClosedDrift<dim> PositionUpdate<dim>::closed_drift(const StepContext<dim>& conte
   if (components_.contact)
     drift.path.contact = components_.contact->resolve(
         solids, ContactPhase::position, step.dt, *moved, joint_response<dim>(solids, context.dt));
-  drift.motion = closed_flight(*solids.joints(), step, correction, velocity, *moved);
+  drift.motion = solids.joints()->close(step.begin, step.dt, correction, velocity, *moved);
   drift.path.velocity = moved;
   return drift;
 }

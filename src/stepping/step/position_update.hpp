@@ -1,6 +1,6 @@
 #pragma once
 #include "coupling/swept_volumes.hpp"
-#include "interfaces/free_rigid_motion.hpp"
+#include "interfaces/constraint.hpp"
 #include "stepping/step/coupled_solve.hpp"
 
 namespace lockstep {
@@ -22,7 +22,7 @@ struct SolidPath {
 template <int dim>
 struct ClosedDrift {
   SolidPath<dim> path;
-  ClosedFreeMotion motion;
+  ClosedMotion motion;
 };
 
 /// Finds the velocity that moves the solids over a step: from a coupled solve, changed so that

@@ -17,7 +17,7 @@ std::vector<double> resolved_parts(const SolidSystem<dim>& solids,
                                    const NonlinearBodies<dim>& bodies,
                                    const RCP<const CrsMatrix>& added_mass, double dt) {
   const RCP<const Vector> velocity = bodies.without_translations(*solids.velocity());
-  const std::vector<double> given = bodies.dot(*velocity, *solids.implicit_impulse(dt, *velocity));
+  const std::vector<double> given = bodies.dot(*velocity, *implicit_impulse(solids, dt, *velocity));
   Vector product(solids.map());
   apply(*solids.full_block(added_mass, dt), *velocity, product);
   const std::vector<double> whole = bodies.dot(*velocity, product);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "coupling/solid_totals.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "solve/soft/exact_inverse.hpp"
@@ -148,15 +149,7 @@ double largest(const std::vector<double>& values) {
 template <int dim>
 bool CoupledSolve<dim>::holds_contacts() const {
   return components_.contact && components_.solids->has_unknowns() &&
-         (!system_.locks_solids() || leaves_impacts());
-}
-
-template <int dim>
-bool CoupledSolve<dim>::leaves_impacts() const {
-  const auto& solids = components_.solids->solids();
-  return std::any_of(solids.begin(), solids.end(), [](const SolidDescription& solid) {
-    return !solid.rigid && !solid.prescribed;
-  });
+         (!system_.locks_solids() || has_soft_solids(*components_.solids));
 }
 
 template <int dim>
@@ -251,7 +244,7 @@ RCP<Vector> CoupledSolve<dim>::expected_impulse(const StepContext<dim>& context,
                                                 const Vector& momentum,
                                                 const Vector& velocity) const {
   const auto& solids = *components_.solids;
-  const bool by_rest = !leaves_impacts() || context.step.last_dt == 0;
+  const bool by_rest = !has_soft_solids(*components_.solids) || context.step.last_dt == 0;
   RCP<Vector> given;
   if (by_rest) {
     given = rcp(new Vector(momentum, Teuchos::Copy));
@@ -414,9 +407,7 @@ RCP<Vector> CoupledSolve<dim>::reactions_to_contacts(const StepContext<dim>& con
 }
 
 template bool CoupledSolve<2>::holds_contacts() const;
-template bool CoupledSolve<2>::leaves_impacts() const;
 template bool CoupledSolve<3>::holds_contacts() const;
-template bool CoupledSolve<3>::leaves_impacts() const;
 template MotionWithContacts<2> CoupledSolve<2>::converge_with_contacts(const StepContext<2>&,
                                                                        const RCP<Vector>&,
                                                                        const BlockVector*);

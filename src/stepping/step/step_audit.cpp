@@ -166,7 +166,7 @@ void StepAudit<dim>::book_solids(const StepContext<dim>& context, const StageRes
         solids, solution.coupled_before, components_.coupling->velocity(*whole.solid), whole,
         solution.gas_pressure);
   report.ledger.add("levers of soft solids", {Point<dim>::Zero(), report.lumping_torque_error});
-  const RCP<const Vector> implicit = solids.implicit_impulse(context.dt, *whole.solid);
+  const RCP<const Vector> implicit = implicit_impulse(solids, context.dt, *whole.solid);
   report.linearisation_impulse =
       solids.momentum(*implicit).angular + inner_angular_impulse(solids, context.dt);
   report.ledger.add("linearised forces", {Point<dim>::Zero(), report.linearisation_impulse});

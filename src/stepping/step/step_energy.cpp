@@ -9,12 +9,14 @@ namespace lockstep {
 
 namespace {
 
-/// Work of one model's forces [J]; all are loads if it is no WorkingSolids.
+/// Work of one model's forces [J]; all are loads if it tells no other.
 template <int dim>
 SolidWork work_of_model(const SolidModel<dim>& model, const StepContext<dim>& context,
                         const Vector& velocity, const Vector& mean) {
-  if (const auto* working = model.work())
-    return working->solid_work(context.begin, context.dt, velocity, mean);
+  if (const auto* audited = model.audit()) {
+    if (const auto work = audited->solid_work(context.begin, context.dt, velocity, mean))
+      return *work;
+  }
   Vector impulse(mean.getMap()), without(mean.getMap());
   model.explicit_momentum(context.begin, context.dt, impulse);
   model.explicit_momentum(context.begin, 0, without);

@@ -123,7 +123,7 @@ TEST(SolidSystem, DoesWithoutSideInterfaces) {
   EXPECT_FALSE(has_implicit_forces(solids));
   EXPECT_FALSE(solids.linearise(0.1, *solids.velocity()));
   EXPECT_TRUE(linearisation(solids).is_null());
-  EXPECT_TRUE(solids.near_null_space(Teuchos::null).empty());
+  EXPECT_TRUE(near_null_space(solids, Teuchos::null).empty());
   EXPECT_EQ(n_clamped_elements(solids), 0);
 }
 

@@ -43,14 +43,14 @@ ViscousOptions to_round_off() {
 
 ViscousResult<2> solve_viscosity(CoupledCase<2>& c,
                                  const ViscousOptions& options = to_round_off()) {
-  const auto system = c.fluid.viscous_system();
+  const auto system = c.fluid.viscosity()->viscous_system();
   RCP<const LinearOperator> block;
   RCP<const Vector> row;
   if (c.solids.has_unknowns()) {
     block = c.system.blocks(viscous_dt).solid_block();
     row = c.system.lumped_momentum(*c.solids.explicit_momentum(0, viscous_dt));
   }
-  return solve_viscous<2>({*system, c.fluid, c.solids, c.coupling, block, {}},
+  return solve_viscous<2>({*system, *c.fluid.viscosity(), c.solids, c.coupling, block, {}},
                           {row, viscous_dt, c.solids.reduction(), options});
 }
 
@@ -199,7 +199,7 @@ TEST(Viscous, VanishingViscosityLeavesEverythingAlone) {
     last = impulse;
   }
   CoupledCase<2> inviscid(viscous_tank(0), fake_solids<2>({{partition(FakeBody<2>::Kind::rigid)}}));
-  EXPECT_EQ(inviscid.fluid.viscous_system(), nullptr);
+  EXPECT_EQ(inviscid.fluid.viscosity(), nullptr);
 }
 
 }  // namespace lockstep::test

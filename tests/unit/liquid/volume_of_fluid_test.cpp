@@ -285,8 +285,7 @@ void expect_fragments_of_gone_tiles_return(const std::string& correction, bool h
                       [](const Index<dim>& first, const Index<dim>&) {
                         return first[dim - 1] < 2 * tile_width<dim>;
                       });
-  const auto finish = dynamic_cast<MigratingInterface<dim>&>(*model).migrate(
-      TileMigration<dim>(bath.domain.grid, grid));
+  const auto finish = model->migrate(TileMigration<dim>(bath.domain.grid, grid));
   bath.domain.set_grid(std::move(grid));
   finish();
   EXPECT_NEAR(model->ledger().target + model->ledger().lost, start, 1e-14);

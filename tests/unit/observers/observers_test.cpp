@@ -132,7 +132,7 @@ TEST(Flow, OfAWindowThatSticksOutOnlyThePartInTheDomainIsSampled) {
 /// Left and right of it the same fluid again.
 class PeriodicHalfPlane : public HalfPlane {
  public:
-  bool is_periodic() const override { return true; }
+  std::array<bool, 2> periodic_axes() const override { return {true, false}; }
 };
 
 TEST(Flow, TooManySquaresAreRefused) {

@@ -35,9 +35,8 @@ class RecordingFluid : public FakeFluid<2> {
     calls_.push_back(fmt::format("fluid: forces over {}", dt));
     return FakeFluid<2>::add_forces(time, dt);
   }
-  std::unique_ptr<ViscousSystem<2>> viscous_system() const override {
-    calls_.push_back("fluid: viscosity");
-    return FakeFluid<2>::viscous_system();
+  ViscousFluid<2>* viscosity() override {
+    return FakeFluid<2>::viscosity() ? &viscosity_ : nullptr;
   }
   void project(const Vector& scaled_pressure) override {
     calls_.push_back("fluid: project");
@@ -62,7 +61,21 @@ class RecordingFluid : public FakeFluid<2> {
   }
 
  private:
+  /// Its viscosity, whose system is written down.
+  struct RecordingViscosity : ViscousFluid<2> {
+    explicit RecordingViscosity(RecordingFluid& owner) : fluid(owner) {}
+    std::unique_ptr<ViscousSystem<2>> viscous_system() const override {
+      fluid.calls_.push_back("fluid: viscosity");
+      return fluid.FakeFluid<2>::viscosity()->viscous_system();
+    }
+    Momentum<2> accept_viscous(const Vector& solution, const Vector& velocity, double dt) override {
+      return fluid.FakeFluid<2>::viscosity()->accept_viscous(solution, velocity, dt);
+    }
+    RecordingFluid& fluid;
+  };
+
   Calls& calls_;
+  RecordingViscosity viscosity_{*this};
 };
 
 /// FakeSolid that does the same.
@@ -108,7 +121,7 @@ class RecordingJoints : public ConstraintModel {
   explicit RecordingJoints(Calls& calls) : calls_(calls) {}
   std::string name() const override { return "recording"; }
   std::vector<Combination> combinations() const override { return {}; }
-  ClosedMotion close(double, double, Vector&) override { return {}; }
+  ClosedMotion close(double, double, const Vector&, const Vector&, Vector&) override { return {}; }
   std::vector<JointLimit> limits(double, const std::vector<double>&) const override { return {}; }
   std::vector<GivenMotion> given_motions() const override { return {}; }
   std::string limited() const override { return ""; }
@@ -116,6 +129,8 @@ class RecordingJoints : public ConstraintModel {
   int largest_block() const override { return 0; }
   void take_note(const JointImpulses&, double, double) override {}
   std::vector<JointState> states(double) const override { return {}; }
+  void set_target(const std::string&, double, const std::vector<double>&,
+                  const std::vector<double>&) override {}
   std::string note() const override { return ""; }
 
  private:

@@ -10,8 +10,8 @@
 
 #include "base/errors.hpp"
 #include "interfaces/constraint.hpp"
-#include "interfaces/line_tensions.hpp"
 #include "interfaces/solid.hpp"
+#include "interfaces/solid_sides.hpp"
 #include "output/atomic_file.hpp"
 #include "output/csv_line.hpp"
 #include "unit/output/test_folder.hpp"
@@ -325,11 +325,11 @@ TYPED_TEST(RunTablesOf, LinesSayOfEachColumnWhatItsNameSays) {
 
 TYPED_TEST(RunTablesOf, JointsSayOfEachColumnWhatItsNameSays) {
   constexpr int dim = TestFixture::dimension;
-  JointState slide{"Sleeve", 2, 1, 2, 3, 4, 5, 6, 8, true, false};
-  JointState hinge{"Hinge", 0, 11, 12, 13, 14, 15, 16, 18, false, true};
+  JointState slide{"Sleeve", 2, 1, 2, 3, 4, 5, 6, 8, true, false, false};
+  JointState hinge{"Hinge", 0, 11, 12, 13, 14, 15, 16, 18, false, true, true};
   RunTables<dim> tables(this->comm, this->folder, nullptr, true, false);
   tables.start();
-  tables.append_joints(7, this->report, {slide, hinge}, {0, 1});
+  tables.append_joints(7, this->report, {slide, hinge});
   const std::string time = text_of(this->report.time);
   EXPECT_THAT(this->rows("joints.csv"), ::testing::ElementsAre(Texts{{"step", "7"},
                                                                      {"time", time},
