@@ -95,17 +95,23 @@ void CoupledSystem<dim>::subtract_given(double dt, const Reduction& constraints,
           *constraints.offset(), row, -1, 1);
 }
 
+/// Row 1 of the right-hand side, incompatible parts included.
+template <int dim>
+RCP<Vector> CoupledSystem<dim>::pressure_row(const Reduction& constraints) const {
+  const RCP<Vector> row = make_vector(fluid_.pressure_map());
+  fluid_.divergence(*row);
+  coupling_.add_prescribed_divergence(*row);
+  if (!constraints.offset().is_null())
+    coupling_.coupling_transposed()->apply(*constraints.offset(), *row, Teuchos::TRANS, 1, 1);
+  return row;
+}
+
 template <int dim>
 BlockVector CoupledSystem<dim>::right_hand_side(const Vector& momentum, double dt,
                                                 const Reduction& constraints,
                                                 double& incompatibility) const {
   BlockVector rhs;
-  rhs.pressure = make_vector(fluid_.pressure_map());
-  fluid_.divergence(*rhs.pressure);
-  coupling_.add_prescribed_divergence(*rhs.pressure);
-  if (!constraints.offset().is_null())
-    coupling_.coupling_transposed()->apply(*constraints.offset(), *rhs.pressure, Teuchos::TRANS, 1,
-                                           1);
+  rhs.pressure = pressure_row(constraints);
   const bool with_solid = solids_.has_unknowns();
   incompatibility = relative_part_removed(
       with_solid ? blocks_.null_space : pressure_only_.null_space, *rhs.pressure);
@@ -187,6 +193,23 @@ std::vector<RCP<const Vector>> CoupledSystem<dim>::locked_directions() const {
     directions.push_back(direction);
   }
   return directions;
+}
+
+/// Row 1, A p - B P y = r, along a null vector n of A: -n.B P y = n.r.
+template <int dim>
+std::vector<double> CoupledSystem<dim>::locked_rates(const Reduction& constraints) const {
+  std::vector<double> rates;
+  if (!locks_solids())
+    return rates;
+  const NullSpace& pressures = blocks_.pressure_null_space;
+  const std::vector<double> sums = pressures.regions().sums_of(*pressure_row(constraints));
+  for (const auto& parts : pressures.vectors()) {
+    double rate = 0;
+    for (const NullSpace::Part& part : parts)
+      rate -= part.value * sums[part.region];
+    rates.push_back(rate);
+  }
+  return rates;
 }
 
 template <int dim>

@@ -60,15 +60,20 @@ class CoupledSystem {
   double lumped_fluid_energy(const std::vector<double>& coupled_velocity) const;
 
   const NullSpace& null_space() const { return blocks_.null_space; }
+  const NullSpace& pressure_null_space() const { return blocks_.pressure_null_space; }
   /// P^T B^T n of all null vectors n of A, if `locks_solids`: impulses to which solids do not
   /// yield, of a pressure that is the same all over closed fluid [m^(dim-1)]. Collective.
   std::vector<RCP<const Vector>> locked_directions() const;
+  /// Returns d.y for each of these directions d, as `right_hand_side` demands it of the unknowns y
+  /// [m^dim/s]. Collective.
+  std::vector<double> locked_rates(const Reduction& constraints) const;
   /// True if solids change the volume of closed fluid, which holds them fast along that motion.
   bool locks_solids() const {
     return blocks_.null_space.size() != blocks_.pressure_null_space.size();
   }
 
  private:
+  RCP<Vector> pressure_row(const Reduction& constraints) const;
   void add_given_fluxes(const Reduction& constraints, std::vector<PrescribedFlux>& fluxes) const;
 
   FluidDiscretization<dim>& fluid_;

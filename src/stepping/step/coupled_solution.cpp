@@ -14,6 +14,14 @@ RCP<Vector> last_pressure(const FluidDiscretization<dim>& fluid, const StepTime&
 }
 
 template <int dim>
+RCP<Vector> impulse_at_rest(const Components<dim>& components, double dt) {
+  const auto impulse = make_vector(components.solids->map());
+  if (const auto* coupling = components.coupling->hydrostatics())
+    coupling->add_impulse_at_rest(dt, *impulse);
+  return impulse;
+}
+
+template <int dim>
 SolveRequest solve_request(const FluidDiscretization<dim>& fluid, const std::string& name,
                            double tolerance, const StepTime& step, double dt) {
   const double speed = fluid.largest_speed() + dt * fluid.gravity().norm();
@@ -24,6 +32,8 @@ SolveRequest solve_request(const FluidDiscretization<dim>& fluid, const std::str
 
 template RCP<Vector> last_pressure(const FluidDiscretization<2>&, const StepTime&, double);
 template RCP<Vector> last_pressure(const FluidDiscretization<3>&, const StepTime&, double);
+template RCP<Vector> impulse_at_rest(const Components<2>&, double);
+template RCP<Vector> impulse_at_rest(const Components<3>&, double);
 template SolveRequest solve_request(const FluidDiscretization<2>&, const std::string&, double,
                                     const StepTime&, double);
 template SolveRequest solve_request(const FluidDiscretization<3>&, const std::string&, double,

@@ -1,6 +1,7 @@
 #pragma once
 #include "interfaces/fluid_sides.hpp"
 #include "interfaces/strategy.hpp"
+#include "stepping/step/components.hpp"
 #include "stepping/step/step_context.hpp"
 
 namespace lockstep {
@@ -22,6 +23,11 @@ struct CoupledSolution {
 /// p̂ = dt p with the last step's pressure p; zero before the first step. Collective.
 template <int dim>
 RCP<Vector> last_pressure(const FluidDiscretization<dim>& fluid, const StepTime& step, double dt);
+
+/// Impulse on solids over dt of the hydrostatic force of fluid at rest
+/// (`HydrostaticCoupling::add_impulse_at_rest`); zero without such a force. Collective.
+template <int dim>
+RCP<Vector> impulse_at_rest(const Components<dim>& components, double dt);
 
 /// Accuracy that a solve over dt has to reach. Residuals below the round-off of the fluxes, with
 /// the speed that gravity may add, are nothing: in each cell a few bits of what passes a face, in

@@ -140,16 +140,17 @@ MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& co
   const auto momentum = rcp(new Vector(*solids.momentum, Teuchos::Copy));
   MotionWithContacts<dim> end;
   if (holds_contacts()) {
+    const auto given = rcp(new Vector(*momentum, Teuchos::Copy));
     if (!drag.is_null())
-      momentum->update(1, *drag, 1);
-    MotionWithContacts<dim> held = converge_with_contacts(context, momentum, nearby);
-    end.solution = held.solution;
-    end.contact = held.contact;
-    if (held.contact.n_contacts > 0)
-      end.contact_impulse = held.contact.impulse;
-  } else {
+      given->update(1, *drag, 1);
+    end = converge_with_contacts(context, given, nearby);
+    if (end.contact.n_contacts > 0)
+      end.contact_impulse = end.contact.impulse;
+  }
+  if (!holds_contacts() || !end.is_settled) {
+    end = {};
     if (components_.contact && components_.solids->has_unknowns()) {
-      const RCP<const Vector> at_rest = impulse_at_rest(context.dt);
+      const RCP<const Vector> at_rest = impulse_at_rest(components_, context.dt);
       momentum->update(1, *at_rest, 1);
       const auto impulse = rcp(new Vector(*momentum, Teuchos::Copy));
       end.contact = contact_before_solve(context, *momentum);

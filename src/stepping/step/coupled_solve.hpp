@@ -2,6 +2,7 @@
 #include "coupling/coupled_system.hpp"
 #include "output/timers.hpp"
 #include "stepping/step/implicit_motion.hpp"
+#include "stepping/step/locked_motions.hpp"
 #include "stepping/step/solid_forces.hpp"
 #include "stepping/step/trapped_gas.hpp"
 
@@ -19,6 +20,7 @@ struct MotionWithContacts {
   ContactReport<dim> contact;
   RCP<const Vector> contact_impulse{};  ///< generalized, of all contacts and limits; null: none
   RCP<const Vector> free_velocity{};    ///< V without the contacts held, in their response R
+  bool is_settled = true;  ///< false: what closed fluid and contacts ask for has no solution
 };
 
 /// Finds p̂ and V of Eq. 16 at frozen geometry, with implicit forces of solids, gas and contact.
@@ -40,9 +42,7 @@ class CoupledSolve {
   CoupledSolution converge(const StepContext<dim>& context, const RCP<Vector>& momentum,
                            const BlockVector* nearby = nullptr);
   /// True if contacts, and limits of joints, are part of the coupled solve. Where closed fluid
-  /// locks rigid solids alone they are not: regions that bodies pinch off between them and walls
-  /// block the same motions as contacts, and the solve does not tell which bears what. Then contact
-  /// acts on V_S* alone. The same on all ranks.
+  /// locks solids with joints they are not; then contact acts on V_S* alone. The same on all ranks.
   bool holds_contacts() const;
   /// Returns the contacts of the velocities that solids with `momentum` have if the fluid gives
   /// them what it gives at rest, or gave soft ones in the last step, in the response of
@@ -86,18 +86,16 @@ class CoupledSolve {
   bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution,
                Vector& momentum);
   ContactReport<dim> contact_before_solve(const StepContext<dim>& context, Vector& momentum);
-  RCP<Vector> impulse_at_rest(double dt) const;
   RCP<Vector> expected_impulse(const StepContext<dim>& context, const Vector& momentum,
                                const Vector& velocity) const;
-  RCP<const CrsMatrix> mass_of_fluid_near() const;
   void solve_held(const StepContext<dim>& context, const Vector& momentum,
-                  const BlockVector* nearby, MotionWithContacts<dim>& motion);
+                  const BlockVector* nearby, const LockedMotions& locked,
+                  MotionWithContacts<dim>& motion);
   ContactReport<dim> compare(const StepContext<dim>& context, const ContactResponse& response,
                              MotionWithContacts<dim>& motion, double& scale);
   void release(const StepContext<dim>& context, MotionWithContacts<dim>& motion);
   ContactReport<dim> decide(const StepContext<dim>& context, const ContactResponse& response,
                             Vector& velocity);
-  void soften(double dt, std::vector<HeldRow>& rows) const;
 
   Components<dim>& components_;
   CoupledSystem<dim>& system_;

@@ -2,10 +2,26 @@
 
 #include <Tpetra_Vector.hpp>
 
+#include "base/communicator.hpp"
 #include "linear/action_operator.hpp"
 #include "linear/least_squares.hpp"
 
 namespace lockstep {
+
+namespace {
+/// The products of vectors with x, by one sum over ranks. Collective.
+Eigen::VectorXd dots(const std::vector<RCP<const Vector>>& vectors, const Vector& x) {
+  const auto values = x.getData();
+  Eigen::VectorXd products = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(vectors.size()));
+  for (std::size_t k = 0; k < vectors.size(); ++k) {
+    const auto other = vectors[k]->getData();
+    for (int row = 0; row < values.size(); ++row)
+      products[static_cast<Eigen::Index>(k)] += other[row] * values[row];
+  }
+  sum_all(x.getMap()->getComm(), products.data(), static_cast<int>(products.size()));
+  return products;
+}
+}  // namespace
 
 RCP<const LinearOperator> locked_response(const RCP<const LinearOperator>& response,
                                           const std::vector<RCP<const Vector>>& directions) {
@@ -19,17 +35,13 @@ RCP<const LinearOperator> locked_response(const RCP<const LinearOperator>& respo
     apply(*response, *direction, *answer);
     answers.push_back(answer);
   }
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j)
-      products(i, j) = directions[i]->dot(*answers[j]);
+  for (Eigen::Index j = 0; j < n; ++j)
+    products.col(j) = dots(directions, *answers[j]);
   const Eigen::MatrixXd inverse = pseudo_inverse(0.5 * (products + products.transpose()));
   return action_operator(directions.front()->getMap(),
                          [=](const Vector& impulse, Vector& velocity) {
                            apply(*response, impulse, velocity);
-                           Eigen::VectorXd along(n);
-                           for (Eigen::Index i = 0; i < n; ++i)
-                             along[i] = answers[i]->dot(impulse);
-                           const Eigen::VectorXd factors = inverse * along;
+                           const Eigen::VectorXd factors = inverse * dots(answers, impulse);
                            for (Eigen::Index i = 0; i < n; ++i)
                              velocity.update(-factors[i], *answers[i], 1);
                          });

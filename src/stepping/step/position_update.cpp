@@ -64,11 +64,14 @@ void PositionUpdate<dim>::solve(const StepContext<dim>& context, const RCP<const
   if (!drag.is_null())
     momentum->update(1, *drag, 1);
   MotionWithContacts<dim> held;
-  if (solve_.holds_contacts()) {
+  if (solve_.holds_contacts())
     held = solve_.converge_with_contacts(context, momentum, nearby);
+  found.holds_contacts = solve_.holds_contacts() && held.is_settled;
+  if (found.holds_contacts) {
     found.solution = held.solution;
     found.path.contact = held.contact;
   } else {
+    held = {};
     found.solution = solve_.converge(context, momentum, nearby);
   }
   found.velocity = found.solution.velocity;
@@ -115,7 +118,7 @@ void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& fo
     found.path.is_converged = settled.is_settled;
     add_last(settled.contact, found.path.contact);
   } else if (components_.contact && solids.has_unknowns() &&
-             (!solve_.holds_contacts() || has_soft_solids(*components_.solids))) {
+             (!found.holds_contacts || has_soft_solids(*components_.solids))) {
     add_last(components_.contact->resolve(solids, ContactPhase::position, dt, *found.velocity,
                                           joint_response<dim>(solids, context.dt)),
              found.path.contact);

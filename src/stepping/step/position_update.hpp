@@ -49,11 +49,12 @@ class PositionUpdate {
   /// A path with what closing its joints asks of it.
   struct Found {
     SolidPath<dim> path;
-    RCP<Vector> velocity;       ///< velocity of the path
-    RCP<const Vector> solved;   ///< before contact; null without joints
-    RCP<Vector> joint_impulse;  ///< impulse of joints in the solve; null without joints
-    SweptRates swept;           ///< rates of the solve [m^dim/s]
-    CoupledSolution solution;   ///< empty without unknowns
+    RCP<Vector> velocity;         ///< velocity of the path
+    RCP<const Vector> solved;     ///< before contact; null without joints
+    RCP<Vector> joint_impulse;    ///< impulse of joints in the solve; null without joints
+    SweptRates swept;             ///< rates of the solve [m^dim/s]
+    CoupledSolution solution;     ///< empty without unknowns
+    bool holds_contacts = false;  ///< the solve does
   };
   Found find_once(const StepContext<dim>& context, const RCP<const Vector>& drag,
                   const RCP<const Vector>& correction, const BlockVector* nearby);

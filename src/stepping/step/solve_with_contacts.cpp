@@ -6,11 +6,13 @@
 #include <limits>
 #include <optional>
 
+#include "base/errors.hpp"
 #include "coupling/solid_totals.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "solve/soft/exact_inverse.hpp"
 #include "stepping/step/coupled_solve.hpp"
+#include "stepping/step/locked_motions.hpp"
 #include "stepping/step/locked_response.hpp"
 #include "stepping/step/secant_response.hpp"
 
@@ -23,6 +25,12 @@ constexpr double stiffness_factor = 1e5;
 /// Velocity by which solve and contact model may differ, over that which gravity and impacts ask
 /// for [1].
 constexpr double tolerance = 1e-5;
+/// Velocity by which they may differ where one more solve has gained nothing, over that, too: what
+/// the contact model itself leaves by its "Tolerance" [1].
+constexpr double fair_tolerance = 1e-4;
+/// Velocity by which they may differ beside closed fluid, over that which gravity gives in the step
+/// and contacts have before it [1]. Chosen, not varied by a page.
+constexpr double coarse_tolerance = 0.01;
 constexpr int most_solves = 12, most_without_gain = 5;
 
 double stiffness_of(const HeldRow& row) {
@@ -70,16 +78,15 @@ std::vector<double> impulses_of(const std::vector<HeldRow>& rows, const Vector& 
   return impulses;
 }
 
-/// Puts the impulses J^T l~ that the contacts of a solve have given into their report, and what of
-/// them are limits'. Collective.
+/// Puts the impulses J^T l~ of the contacts of a solve into their report, and what of them are
+/// limits'. Collective.
 template <int dim>
-void report_impulses(const Vector& velocity, const SolidSystem<dim>& solids,
+void report_impulses(const std::vector<double>& impulses, const SolidSystem<dim>& solids,
                      ContactReport<dim>& contacts) {
   const auto impulse = make_vector(solids.map()), on_given = make_vector(solids.map());
   add_to(contacts.sliding, 1, *impulse);
   add_to(contacts.sliding_on_given, 1, *on_given);
   contacts.limit_impulses.clear();
-  const std::vector<double> impulses = impulses_of(contacts.held, velocity, solids.comm());
   for (std::size_t k = 0; k < impulses.size(); ++k) {
     const HeldRow& row = contacts.held[k];
     add_to(row.weights, impulses[k], *impulse);
@@ -138,18 +145,106 @@ ContactPhase phase_of(const StepContext<dim>& context) {
   return context.moves_positions ? ContactPhase::position : ContactPhase::velocity;
 }
 
+/// The mass that R has beside M_S: of the fluid on solids, as a matrix on the stack.
+template <int dim>
+RCP<const CrsMatrix> mass_of_fluid_near(const Components<dim>& components) {
+  const RCP<const CrsMatrix> lumped = components.coupling->added_mass();
+  if (const auto* coupling = components.coupling->hydrostatics())
+    return coupling->mass_with_fluid(*components.solids, lumped);
+  return lumped;
+}
+
+/// Lets no stiffness be so large beside a light body's own mass that the round-off of K J V reaches
+/// the tolerance of the solve in the directions that are free.
+template <int dim>
+void soften(const Components<dim>& components, double tolerance_of_solve, double dt,
+            std::vector<HeldRow>& rows) {
+  if (rows.empty())
+    return;
+  constexpr double round_off = 10 * std::numeric_limits<double>::epsilon();
+  const auto& solids = *components.solids;
+  const RCP<const Vector> mobility = inverse_diagonal(
+      *assembled(solids.solid_block(components.coupling->added_mass(), dt)), "solids in contact");
+  const auto of_dofs = mobility->getData();
+  std::vector<double> own(rows.size(), 0);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (const auto& [dof, weight] : by_unknowns(solids, rows[k].weights))
+      if (const int local = mobility->getMap()->getLocalElement(dof); local >= 0)
+        own[k] += weight * weight * of_dofs[local];
+  sum_over_ranks(solids.comm(), own);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    rows[k].response =
+        std::max(rows[k].response, stiffness_factor * round_off / tolerance_of_solve * own[k]);
+}
+
+/// True if closed fluid locks rigid solids. Of soft ones it ties all nodes to one another, and
+/// leaves them other ways to go.
+template <int dim>
+bool locks_rigid_solids(const Components<dim>& components, const CoupledSystem<dim>& system) {
+  return system.locks_solids() && !has_soft_solids(*components.solids);
+}
+
+/// Motions that closed fluid does not let rigid solids make. Collective.
+template <int dim>
+LockedMotions locked_motions(const Components<dim>& components, const CoupledSystem<dim>& system,
+                             const StepContext<dim>& context) {
+  const auto& solids = *components.solids;
+  const auto block = solids.solid_block(components.coupling->added_mass(), context.dt);
+  return {system.pressure_null_space(), system.locked_directions(),
+          system.locked_rates(context.constraints), *exact_inverse(block, "solids in contact")};
+}
+
+/// Where a solve begins: `nearby`, else what the last step has left; less a pressure.
+template <int dim>
+BlockVector begin_of_solve(const Components<dim>& components, const StepContext<dim>& context,
+                           const BlockVector* nearby) {
+  BlockVector begin;
+  if (nearby)
+    return {rcp(new Vector(*nearby->pressure, Teuchos::Copy)), nearby->solid};
+  begin.pressure =
+      rcp(new Vector(*last_pressure(*components.fluid, context.step, context.dt), Teuchos::Copy));
+  begin.solid = components.solids->velocity();
+  return begin;
+}
+
 double largest(const std::vector<double>& values) {
   double most = 0;
   for (const double value : values)
     most = std::max(most, std::abs(value));
   return most;
 }
+
+/// The velocity that gravity gives in a step, or that rows have before it if that is larger [m/s].
+/// Collective.
+template <int dim>
+double ordinary_velocity(const Components<dim>& components, const StepContext<dim>& context,
+                         const std::vector<HeldRow>& rows) {
+  const auto& solids = *components.solids;
+  return std::max(context.dt * components.fluid->gravity().norm(),
+                  largest(values_of(rows, *solids.velocity(), solids.comm())));
+}
+
+/// Bound of `largest_change` over the ordinary velocity: what a body can bear of all others, and a
+/// margin that was chosen. Contradictions went beyond it a hundred times.
+template <int dim>
+double most_change(const Components<dim>& components) {
+  return 3.0 * (1 + static_cast<double>(components.solids->solids().size()));
+}
+
+/// The largest velocity that the impulse of a row would give it alone [m/s].
+double largest_change(const std::vector<HeldRow>& rows) {
+  double most = 0;
+  for (const HeldRow& row : rows)
+    most = std::max(most, std::abs(row.impulse) * row.response);
+  return most;
+}
+
 }  // namespace
 
 template <int dim>
 bool CoupledSolve<dim>::holds_contacts() const {
   return components_.contact && components_.solids->has_unknowns() &&
-         (!system_.locks_solids() || has_soft_solids(*components_.solids));
+         (!system_.locks_solids() || !components_.solids->joints());
 }
 
 template <int dim>
@@ -167,29 +262,12 @@ MotionWithContacts<dim> CoupledSolve<dim>::converge_with_contacts(const StepCont
 }
 
 template <int dim>
-RCP<Vector> CoupledSolve<dim>::impulse_at_rest(double dt) const {
-  const auto impulse = make_vector(components_.solids->map());
-  if (const auto* coupling = components_.coupling->hydrostatics())
-    coupling->add_impulse_at_rest(dt, *impulse);
-  return impulse;
-}
-
-/// The mass that R has beside M_S: of the fluid on solids, as a matrix on the stack.
-template <int dim>
-RCP<const CrsMatrix> CoupledSolve<dim>::mass_of_fluid_near() const {
-  const RCP<const CrsMatrix> lumped = components_.coupling->added_mass();
-  if (const auto* coupling = components_.coupling->hydrostatics())
-    return coupling->mass_with_fluid(*components_.solids, lumped);
-  return lumped;
-}
-
-template <int dim>
 ContactResponse CoupledSolve<dim>::contact_response(double dt) const {
   return [this, dt, response = RCP<const LinearOperator>()]() mutable {
     if (response.is_null()) {
       const auto& solids = *components_.solids;
       const std::string name = "solids in contact with the fluid on them";
-      const auto block = solids.solid_block(mass_of_fluid_near(), dt);
+      const auto block = solids.solid_block(mass_of_fluid_near(components_), dt);
       // A mechanism is one block, as the contact model has its mass.
       response =
           solids.joints()
@@ -208,30 +286,8 @@ ContactReport<dim> CoupledSolve<dim>::decide(const StepContext<dim>& context,
   ScopedStage stage(timers_, "contact");
   ContactReport<dim> report = components_.contact->decide(*components_.solids, phase_of(context),
                                                           context.step.dt, velocity, response);
-  soften(context.dt, report.held);
+  soften(components_, options_.tolerance, context.dt, report.held);
   return report;
-}
-
-/// Lets no stiffness be so large beside a light body's own mass that the round-off of K J V reaches
-/// the tolerance of the solve in the directions that are free.
-template <int dim>
-void CoupledSolve<dim>::soften(double dt, std::vector<HeldRow>& rows) const {
-  if (rows.empty())
-    return;
-  constexpr double round_off = 10 * std::numeric_limits<double>::epsilon();
-  const auto& solids = *components_.solids;
-  const RCP<const Vector> mobility = inverse_diagonal(
-      *assembled(solids.solid_block(components_.coupling->added_mass(), dt)), "solids in contact");
-  const auto of_dofs = mobility->getData();
-  std::vector<double> own(rows.size(), 0);
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    for (const auto& [dof, weight] : by_unknowns(solids, rows[k].weights))
-      if (const int local = mobility->getMap()->getLocalElement(dof); local >= 0)
-        own[k] += weight * weight * of_dofs[local];
-  sum_over_ranks(solids.comm(), own);
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    rows[k].response =
-        std::max(rows[k].response, stiffness_factor * round_off / options_.tolerance * own[k]);
 }
 
 /// Impulse that changes the present velocities of the solids in a solve without contact: `momentum`
@@ -248,7 +304,7 @@ RCP<Vector> CoupledSolve<dim>::expected_impulse(const StepContext<dim>& context,
   RCP<Vector> given;
   if (by_rest) {
     given = rcp(new Vector(momentum, Teuchos::Copy));
-    given->update(1, *impulse_at_rest(context.dt), 1);
+    given->update(1, *impulse_at_rest(components_, context.dt), 1);
   } else {
     given = system_.lumped_momentum(momentum);
     components_.coupling->coupling_transposed()->apply(
@@ -266,7 +322,7 @@ ContactReport<dim> CoupledSolve<dim>::expected_contacts(const StepContext<dim>& 
                                                         const ContactResponse& response) {
   const auto& solids = *components_.solids;
   Vector velocity(*solids.velocity(), Teuchos::Copy), given(momentum, Teuchos::Copy);
-  given.update(1, *impulse_at_rest(context.dt), 1);
+  given.update(1, *impulse_at_rest(components_, context.dt), 1);
   // R of soft solids and mechanisms is dear: it is not made where nothing is near.
   if (!components_.contact->may_act(solids, phase_of(context), context.step.dt,
                                     *solids.velocity_of(given)))
@@ -309,15 +365,33 @@ void CoupledSolve<dim>::release(const StepContext<dim>& context, MotionWithConta
   context.constraints.expand(*solution.velocity);
 }
 
-/// A solve that holds the contacts of `motion`, and the impulses that they give in it.
+/// A solve that holds the contacts of `motion`, and the impulses that they give in it. `nearby`:
+/// with the pressures of what is locked, as the solution has them.
 template <int dim>
 void CoupledSolve<dim>::solve_held(const StepContext<dim>& context, const Vector& momentum,
-                                   const BlockVector* nearby, MotionWithContacts<dim>& motion) {
-  const auto pushed = rcp(new Vector(momentum, Teuchos::Copy));
-  hold(motion.contact, *pushed);
-  motion.solution = solve(context, pushed, context.solve, nearby);
+                                   const BlockVector* nearby, const LockedMotions& locked,
+                                   MotionWithContacts<dim>& motion) {
   const auto& solids = *components_.solids;
-  report_impulses(*motion.solution.velocity, solids, motion.contact);
+  const auto pushed = rcp(new Vector(momentum, Teuchos::Copy));
+  ContactReport<dim> free = motion.contact;
+  const Eigen::MatrixXd levels = locked.take_out(free.held);
+  if (levels.size() > 0)
+    soften(components_, options_.tolerance, context.dt, free.held);
+  hold(free, *pushed);
+  BlockVector begin;
+  if (levels.size() > 0) {
+    std::vector<double> expected;
+    for (const HeldRow& row : free.held)
+      expected.push_back(-row.impulse);
+    begin = begin_of_solve(components_, context, nearby);
+    locked.add_pressure(levels, expected, *begin.pressure);
+    nearby = &begin;
+  }
+  motion.solution = solve(context, pushed, context.solve, nearby);
+  const std::vector<double> impulses =
+      impulses_of(free.held, *motion.solution.velocity, solids.comm());
+  locked.add_pressure(levels, impulses, *motion.solution.unknowns.pressure);
+  report_impulses(impulses, solids, motion.contact);
   motion.solution.momentum = rcp(new Vector(momentum, Teuchos::Copy));
   motion.solution.momentum->update(1, *motion.contact.impulse, 1);
 }
@@ -357,7 +431,8 @@ ContactReport<dim> CoupledSolve<dim>::compare(const StepContext<dim>& context,
 /// Then C V + B^T p = q + J^T l~ exactly. The first decision is about what the solve gives in
 /// fluid at rest, so that what lies takes one solve. They agree when l+ for the velocity V - R^-1
 /// J^T l~ is l~. Contacts that bounce in one decision and not in the next may never agree: the best
-/// of the last solves counts.
+/// of the last solves counts. What closed fluid and contacts ask for of rigid solids may
+/// contradict; then impulses have no bound, and the motion is not settled.
 template <int dim>
 MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext<dim>& context,
                                                                const RCP<const Vector>& momentum,
@@ -370,10 +445,24 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
   };
   MotionWithContacts<dim> held, best;
   held.contact = expected_contacts(context, *momentum, response);
+  const double ordinary = ordinary_velocity(components_, context, held.contact.held);
+  const bool is_locked = locks_rigid_solids(components_, system_);
+  LockedMotions locked;
   RCP<const Vector> last_impulse, last_velocity;
-  for (int k = 1, last_gain = 1;; ++k) {
-    solve_held(context, *momentum, k > 1 ? &best.solution.unknowns : nearby, held);
-    if (k > 1 && learned)
+  int n_solves = 0, last_gain = 1;
+  while (!is_locked ||
+         largest_change(held.contact.held) <= most_change<dim>(components_) * ordinary) {
+    if (locked.empty() && is_locked && !held.contact.held.empty())
+      locked = locked_motions(components_, system_, context);
+    try {
+      solve_held(context, *momentum, n_solves > 0 ? &best.solution.unknowns : nearby, locked, held);
+    } catch (const SolveError&) {
+      if (!is_locked)
+        throw;
+      break;
+    }
+    ++n_solves;
+    if (n_solves > 1 && learned)
       learned->learn(
           *on_unknowns(context.constraints, difference(*held.contact.impulse, *last_impulse)),
           *difference(*held.solution.unknowns.solid, *last_velocity));
@@ -381,18 +470,21 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
     last_velocity = held.solution.unknowns.solid;
     double scale = 0;
     ContactReport<dim> next = compare(context, response, held, scale);
-    if (k == 1 || held.contact.residual < 0.5 * best.contact.residual)
-      last_gain = k;
-    if (k == 1 || held.contact.residual < best.contact.residual)
+    if (n_solves == 1 || held.contact.residual < 0.5 * best.contact.residual)
+      last_gain = n_solves;
+    if (n_solves == 1 || held.contact.residual < best.contact.residual)
       best = held;
-    if (best.contact.residual <= tolerance * scale || k - last_gain == most_without_gain ||
-        k == most_solves) {
-      best.contact.n_solves = best.contact.held.empty() ? 0 : k;
-      release(context, best);
-      return best;
-    }
+    const bool is_fair = best.contact.residual <= fair_tolerance * scale;
+    if (best.contact.residual <= tolerance * scale || n_solves == most_solves ||
+        n_solves - last_gain == (is_fair ? 1 : most_without_gain))
+      break;
     held.contact = std::move(next);
   }
+  best.is_settled =
+      !is_locked || (n_solves > 0 && best.contact.residual <= coarse_tolerance * ordinary);
+  best.contact.n_solves = best.contact.held.empty() ? 0 : n_solves;
+  release(context, best);
+  return best;
 }
 
 template <int dim>
@@ -400,7 +492,7 @@ RCP<Vector> CoupledSolve<dim>::reactions_to_contacts(const StepContext<dim>& con
                                                      const MotionWithContacts<dim>& motion) const {
   const auto& solids = *components_.solids;
   const auto reactions = rcp(new Vector(*motion.contact.impulse, Teuchos::Copy));
-  apply(*solids.full_block(mass_of_fluid_near(), context.dt),
+  apply(*solids.full_block(mass_of_fluid_near(components_), context.dt),
         *difference(*motion.solution.velocity, *motion.free_velocity), *reactions, 1, -1);
   context.constraints.keep_reactions(*reactions);
   return reactions;
@@ -414,10 +506,8 @@ template MotionWithContacts<2> CoupledSolve<2>::converge_with_contacts(const Ste
 template MotionWithContacts<3> CoupledSolve<3>::converge_with_contacts(const StepContext<3>&,
                                                                        const RCP<Vector>&,
                                                                        const BlockVector*);
-template RCP<Vector> CoupledSolve<2>::impulse_at_rest(double) const;
 template RCP<Vector> CoupledSolve<2>::expected_impulse(const StepContext<2>&, const Vector&,
                                                        const Vector&) const;
-template RCP<Vector> CoupledSolve<3>::impulse_at_rest(double) const;
 template RCP<Vector> CoupledSolve<3>::expected_impulse(const StepContext<3>&, const Vector&,
                                                        const Vector&) const;
 template ContactResponse CoupledSolve<2>::contact_response(double) const;
