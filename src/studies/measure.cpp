@@ -169,8 +169,15 @@ Variables run_variables(const Study& study, const StudyCase& study_case, const R
   variables["h"] = run.spacing;
   variables["dt"] = run.mean_step;
   variables["cells"] = run.n_cells;
-  for (const auto& [name, value] : study_case.constants)
+  for (const auto& [name, value] : study_case.constants) {
+    constexpr double rounded = 1e-3;  // as decimals of a study are
+    check_input(
+        name != "h" || !(run.spacing > 0) || std::abs(value - run.spacing) <= rounded * run.spacing,
+        "The constant \"h\" of the study is {:.6g}, but \"h\" is the size of the cells, "
+        "which in this run is {:.6g} m; give the constant another name.",
+        value, run.spacing);
     variables[name] = value;
+  }
   return variables;
 }
 
