@@ -22,6 +22,7 @@ struct HeldRow {
   double response = 0;    ///< velocity per impulse in the model's response [1/kg]
   bool is_limit = false;  ///< true for a limit of a joint
   std::vector<std::pair<GlobalIndex, double>> on_given{};  ///< weights of given dofs
+  double stiffness = 0;  ///< K of the row where a coupled solve holds it [kg]
 };
 
 /// Impulse of contact on a prescribed solid, of which no solve knows.

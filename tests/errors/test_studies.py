@@ -58,6 +58,16 @@ class Studies(unittest.TestCase):
         return subprocess.run(self.command(*arguments, study=study), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True, timeout=300)
 
+    def test_a_constant_h_is_the_size_of_the_cells(self):
+        """A study drew its errors over the height of a wave, 0.2 m on every grid."""
+        study = STUDY.replace('  <ParameterList name="Ladder">', """  <ParameterList name="Constants">
+    <Parameter name="h" type="double" value="0.7"/>
+  </ParameterList>
+  <ParameterList name="Ladder">""", 1)
+        done = self.converge(study=study)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn('The constant "h" of the study is 0.7, but', done.stderr)
+
     def test_expressions_are_checked_first(self):
         for wrong, expected in [("Bal.vy", "Did you mean \"Ball.vy\""), ("Ball.vy +", "Quantity \"speed\""),
                                 ("2 * gas_pockets", '"gas_pockets" is called "gas_bubbles" now')]:

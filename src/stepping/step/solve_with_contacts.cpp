@@ -30,12 +30,8 @@ constexpr double tolerance = 1e-5;
 constexpr double fair_tolerance = 1e-4;
 /// Velocity by which they may differ beside closed fluid, over that which gravity gives in the step
 /// and contacts have before it [1]. Chosen, not varied by a page.
-constexpr double coarse_tolerance = 0.01;
+constexpr double coarse_tolerance = 1e-3;
 constexpr int most_solves = 12, most_without_gain = 5;
-
-double stiffness_of(const HeldRow& row) {
-  return stiffness_factor / row.response;
-}
 
 /// J^T K J on the map of the stack. Collective.
 RCP<const CrsMatrix> stiffness_matrix(const std::vector<HeldRow>& rows, const RCP<const Map>& map) {
@@ -44,7 +40,7 @@ RCP<const CrsMatrix> stiffness_matrix(const std::vector<HeldRow>& rows, const RC
     for (const auto& [dof, weight] : row.weights)
       if (map->isNodeGlobalElement(dof))
         for (const auto& [other, other_weight] : row.weights)
-          triplets.push_back({dof, other, stiffness_of(row) * weight * other_weight});
+          triplets.push_back({dof, other, row.stiffness * weight * other_weight});
   return assemble_triplets(std::move(triplets), map, map);
 }
 
@@ -74,7 +70,7 @@ std::vector<double> impulses_of(const std::vector<HeldRow>& rows, const Vector& 
                                 const Communicator& comm) {
   std::vector<double> impulses = values_of(rows, velocity, comm);
   for (std::size_t k = 0; k < rows.size(); ++k)
-    impulses[k] = rows[k].impulse - stiffness_of(rows[k]) * (impulses[k] - rows[k].velocity);
+    impulses[k] = rows[k].impulse - rows[k].stiffness * (impulses[k] - rows[k].velocity);
   return impulses;
 }
 
@@ -154,11 +150,11 @@ RCP<const CrsMatrix> mass_of_fluid_near(const Components<dim>& components) {
   return lumped;
 }
 
-/// Lets no stiffness be so large beside a light body's own mass that the round-off of K J V reaches
-/// the tolerance of the solve in the directions that are free.
+/// Chooses the stiffness of rows: no so large one beside a light body's own mass that the round-off
+/// of K J V reaches the tolerance of the solve in the directions that are free.
 template <int dim>
-void soften(const Components<dim>& components, double tolerance_of_solve, double dt,
-            std::vector<HeldRow>& rows) {
+void set_stiffness(const Components<dim>& components, double tolerance_of_solve, double dt,
+                   std::vector<HeldRow>& rows) {
   if (rows.empty())
     return;
   constexpr double round_off = 10 * std::numeric_limits<double>::epsilon();
@@ -173,8 +169,8 @@ void soften(const Components<dim>& components, double tolerance_of_solve, double
         own[k] += weight * weight * of_dofs[local];
   sum_over_ranks(solids.comm(), own);
   for (std::size_t k = 0; k < rows.size(); ++k)
-    rows[k].response =
-        std::max(rows[k].response, stiffness_factor * round_off / tolerance_of_solve * own[k]);
+    rows[k].stiffness =
+        1 / std::max(rows[k].response / stiffness_factor, round_off / tolerance_of_solve * own[k]);
 }
 
 /// True if closed fluid locks rigid solids. Of soft ones it ties all nodes to one another, and
@@ -286,7 +282,7 @@ ContactReport<dim> CoupledSolve<dim>::decide(const StepContext<dim>& context,
   ScopedStage stage(timers_, "contact");
   ContactReport<dim> report = components_.contact->decide(*components_.solids, phase_of(context),
                                                           context.step.dt, velocity, response);
-  soften(components_, options_.tolerance, context.dt, report.held);
+  set_stiffness(components_, options_.tolerance, context.dt, report.held);
   return report;
 }
 
@@ -340,7 +336,7 @@ void CoupledSolve<dim>::hold(const ContactReport<dim>& contacts, Vector& momentu
                                      : stiffness_matrix(contacts.held, components_.solids->map()));
   add_to(contacts.sliding, 1, momentum);
   for (const HeldRow& row : contacts.held)
-    add_to(row.weights, row.impulse + stiffness_of(row) * row.velocity, momentum);
+    add_to(row.weights, row.impulse + row.stiffness * row.velocity, momentum);
 }
 
 /// Velocities from row 2 without K, C V = q + J^T l~ - B^T p: its round-off is K times larger, and
@@ -375,8 +371,9 @@ void CoupledSolve<dim>::solve_held(const StepContext<dim>& context, const Vector
   const auto pushed = rcp(new Vector(momentum, Teuchos::Copy));
   ContactReport<dim> free = motion.contact;
   const Eigen::MatrixXd levels = locked.take_out(free.held);
+  // A row that is near to what fluid locks is a small difference: its round-off is larger.
   if (levels.size() > 0)
-    soften(components_, options_.tolerance, context.dt, free.held);
+    set_stiffness(components_, 0.1 * options_.tolerance, context.dt, free.held);
   hold(free, *pushed);
   BlockVector begin;
   if (levels.size() > 0) {
