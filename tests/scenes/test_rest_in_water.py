@@ -1,6 +1,7 @@
 """Bodies that lie, float or are loaded in water at rest stay at rest, with both couplings and in both dimensions; one that nothing
 lifts falls freely, and a light one never has more energy than it was let go with. Each scene but the floating boxes broke that while contact did not
 know the fluid."""
+import math
 import sys
 import tempfile
 import unittest
@@ -171,6 +172,9 @@ class RestInWater(unittest.TestCase):
                 self.assertLess(max(abs(v) for name in ("vx", "vy", "wz") for v in column(settled, name)), 1e-6 * G**.5)
                 self.assertLess(max(column(history, "momentum_error")), 1e-14)
                 self.assertTrue(all(0 < n <= 4 for n in column(history[-10:], "contact_solves")))  # 0: contact acts outside
+                # Whoever bears a load, contact or the water that is locked, there is no more than that of all.
+                load = 3 * 1500 * G * math.pi * radius**2
+                self.assertLess(max(abs(v) for name in ("contact_fx", "contact_fy") for v in column(bodies, name)), load)
 
     def test_bodies_float_at_their_draft(self):
         """Upright, a box; turned, a square log of half the density of water, which lies with a corner down under tilted gravity."""

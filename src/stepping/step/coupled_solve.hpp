@@ -92,7 +92,8 @@ class CoupledSolve {
                   const BlockVector* nearby, const LockedMotions& locked,
                   MotionWithContacts<dim>& motion);
   ContactReport<dim> compare(const StepContext<dim>& context, const ContactResponse& response,
-                             MotionWithContacts<dim>& motion, double& scale);
+                             const LockedMotions& locked, MotionWithContacts<dim>& motion,
+                             double& scale);
   void release(const StepContext<dim>& context, MotionWithContacts<dim>& motion);
   ContactReport<dim> decide(const StepContext<dim>& context, const ContactResponse& response,
                             Vector& velocity);

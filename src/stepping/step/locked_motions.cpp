@@ -1,6 +1,7 @@
 #include "stepping/step/locked_motions.hpp"
 
 #include <Tpetra_Vector.hpp>
+#include <limits>
 #include <map>
 
 #include "base/communicator.hpp"
@@ -42,7 +43,8 @@ double own_part(const std::vector<std::pair<GlobalIndex, double>>& weights, cons
 }  // namespace
 
 LockedMotions::LockedMotions(const NullSpace& pressures, std::vector<RCP<const Vector>> directions,
-                             std::vector<double> given, const LinearOperator& inverse) {
+                             std::vector<double> given, RCP<const LinearOperator> inverse)
+    : solid_inverse_(std::move(inverse)) {
   for (std::size_t k = 0; k < directions.size(); ++k) {
     Weights direction = gathered(*directions[k]);
     if (direction.empty())
@@ -51,7 +53,7 @@ LockedMotions::LockedMotions(const NullSpace& pressures, std::vector<RCP<const V
     pressures_.push_back(pressures.vector(k));
     given_.push_back(given[k]);
     const RCP<Vector> answer = make_vector(directions[k]->getMap());
-    apply(inverse, *directions[k], *answer);
+    apply(*solid_inverse_, *directions[k], *answer);
     answers_.push_back(answer);
   }
   if (empty())
@@ -65,19 +67,53 @@ LockedMotions::LockedMotions(const NullSpace& pressures, std::vector<RCP<const V
   inverse_ = pseudo_inverse(0.5 * (products + products.transpose()));
 }
 
-Eigen::MatrixXd LockedMotions::take_out(std::vector<HeldRow>& rows) const {
+/// J C^-1 D. Collective.
+Eigen::MatrixXd LockedMotions::along(const std::vector<HeldRow>& rows) const {
   const auto n = static_cast<Eigen::Index>(directions_.size());
-  Eigen::MatrixXd levels(static_cast<Eigen::Index>(rows.size()), n);
-  if (empty() || rows.empty())
-    return levels;
-  for (Eigen::Index i = 0; i < levels.rows(); ++i)
+  Eigen::MatrixXd products(static_cast<Eigen::Index>(rows.size()), n);
+  if (products.size() == 0)
+    return products;
+  for (Eigen::Index i = 0; i < products.rows(); ++i)
     for (Eigen::Index k = 0; k < n; ++k)
-      levels(i, k) = own_part(rows[i].weights, *answers_[k]);
-  sum_all(answers_.front()->getMap()->getComm(), levels.data(), static_cast<int>(levels.size()));
-  levels = (levels * inverse_).eval();
+      products(i, k) = own_part(rows[i].weights, *answers_[k]);
+  sum_all(answers_.front()->getMap()->getComm(), products.data(),
+          static_cast<int>(products.size()));
+  return products;
+}
+
+std::vector<char> LockedMotions::bears(const std::vector<HeldRow>& rows) const {
+  constexpr double least_free = 0.01;  // a part of J C^-1 J^T; chosen, not varied by a page
+  std::vector<char> borne(rows.size(), 0);
+  if (empty() || rows.empty())
+    return borne;
+  Vector impulse(answers_.front()->getMap()), velocity(impulse.getMap());
+  std::vector<double> whole(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    impulse.putScalar(0);
+    for (const auto& [dof, weight] : rows[i].weights)
+      if (impulse.getMap()->isNodeGlobalElement(dof))
+        impulse.sumIntoGlobalValue(dof, weight);
+    apply(*solid_inverse_, impulse, velocity);
+    whole[i] = own_part(rows[i].weights, velocity);
+  }
+  sum_over_ranks(impulse.getMap()->getComm(), whole);
+  const Eigen::MatrixXd products = along(rows), levels = products * inverse_;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    borne[i] = whole[i] - products.row(row).dot(levels.row(row)) < least_free * whole[i];
+  }
+  return borne;
+}
+
+Eigen::MatrixXd LockedMotions::take_out(std::vector<HeldRow>& rows) const {
+  const Eigen::MatrixXd products = along(rows);
+  if (products.size() == 0)
+    return products;
+  const Eigen::MatrixXd levels = products * inverse_;
+  const std::vector<char> borne = bears(rows);
   for (Eigen::Index i = 0; i < levels.rows(); ++i) {
     std::map<GlobalIndex, double> weights(rows[i].weights.begin(), rows[i].weights.end());
-    for (Eigen::Index k = 0; k < n; ++k) {
+    for (Eigen::Index k = 0; k < levels.cols(); ++k) {
       if (levels(i, k) == 0)
         continue;
       for (const auto& [dof, area] : directions_[k])
@@ -85,6 +121,8 @@ Eigen::MatrixXd LockedMotions::take_out(std::vector<HeldRow>& rows) const {
       rows[i].velocity -= levels(i, k) * given_[k];
     }
     rows[i].weights.assign(weights.begin(), weights.end());
+    if (borne[i])
+      rows[i].response = std::numeric_limits<double>::infinity();
   }
   return levels;
 }

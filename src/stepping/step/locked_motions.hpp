@@ -26,11 +26,15 @@ class LockedMotions {
   /// `pressures`: n; `directions`: d [m^(dim-1)]; `given`: d.V [m^dim/s]; `inverse`: C^-1 of the
   /// unknowns. Collective.
   LockedMotions(const NullSpace& pressures, std::vector<RCP<const Vector>> directions,
-                std::vector<double> given, const LinearOperator& inverse);
+                std::vector<double> given, RCP<const LinearOperator> inverse);
 
   bool empty() const { return directions_.empty(); }
-  /// Replaces rows by J' and its velocities, and returns `levels`, one row a held row, one column a
-  /// direction [1/m^(dim-1)]. Collective.
+  /// Rows that fluid bears all but alone (1): how both share them is no more than round-off, so
+  /// that a solve takes the impulses that contact has decided. Collective.
+  std::vector<char> bears(const std::vector<HeldRow>& rows) const;
+  /// Replaces rows by J' and its velocities, and the responses of those that fluid bears by
+  /// infinite ones, with which nothing holds them. Returns `levels`, one row a held row, one column
+  /// a direction [1/m^(dim-1)]. Collective.
   Eigen::MatrixXd take_out(std::vector<HeldRow>& rows) const;
   /// p̂ += n_k levels_k . impulses. Local.
   void add_pressure(const Eigen::MatrixXd& levels, const std::vector<double>& impulses,
@@ -39,6 +43,9 @@ class LockedMotions {
  private:
   using Weights = std::vector<std::pair<GlobalIndex, double>>;
 
+  Eigen::MatrixXd along(const std::vector<HeldRow>& rows) const;
+
+  RCP<const LinearOperator> solid_inverse_;  ///< C^-1
   std::vector<RCP<const Vector>> pressures_;
   std::vector<Weights> directions_;         ///< by dof, the same on all ranks
   std::vector<RCP<const Vector>> answers_;  ///< C^-1 d

@@ -24,7 +24,8 @@ Eigen::VectorXd dots(const std::vector<RCP<const Vector>>& vectors, const Vector
 }  // namespace
 
 RCP<const LinearOperator> locked_response(const RCP<const LinearOperator>& response,
-                                          const std::vector<RCP<const Vector>>& directions) {
+                                          const std::vector<RCP<const Vector>>& directions,
+                                          double yield) {
   if (directions.empty())
     return response;
   const auto n = static_cast<Eigen::Index>(directions.size());
@@ -37,7 +38,8 @@ RCP<const LinearOperator> locked_response(const RCP<const LinearOperator>& respo
   }
   for (Eigen::Index j = 0; j < n; ++j)
     products.col(j) = dots(directions, *answers[j]);
-  const Eigen::MatrixXd inverse = pseudo_inverse(0.5 * (products + products.transpose()));
+  const Eigen::MatrixXd inverse =
+      (1 - yield) * pseudo_inverse(0.5 * (products + products.transpose()));
   return action_operator(directions.front()->getMap(),
                          [=](const Vector& impulse, Vector& velocity) {
                            apply(*response, impulse, velocity);

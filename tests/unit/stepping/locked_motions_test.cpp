@@ -33,7 +33,7 @@ TEST(LockedMotions, LeaveAContactTheMotionsThatFluidDoesNotHold) {
     inverse.push_back({id, id, 1 / mass[id]});
   const auto answers = as_operator(assemble_triplets(std::move(inverse), map, map));
   const NullSpace pressures = null_space_of({filled(map, {std::sqrt(0.5), std::sqrt(0.5), 0})});
-  const LockedMotions locked(pressures, {filled(map, area)}, {5}, *answers);
+  const LockedMotions locked(pressures, {filled(map, area)}, {5}, answers);
   ASSERT_FALSE(locked.empty());
 
   std::vector<HeldRow> rows(1);
@@ -59,9 +59,28 @@ TEST(LockedMotions, LeaveAContactTheMotionsThatFluidDoesNotHold) {
   EXPECT_LT(pressure->normInf(), 1e-14);
 }
 
+/// A piston alone in a closed tank cannot move: nothing of a stop's row is left to hold, and what
+/// the stop pushes is a pressure of a third of it.
+TEST(LockedMotions, DoNotHoldAContactThatFluidBears) {
+  const auto comm = Tpetra::getDefaultComm();
+  const auto map = make_map(comm->getRank() == 0 ? 1 : 0, comm);
+  std::vector<Triplet> inverse;
+  if (map->getNodeNumElements() > 0)
+    inverse.push_back({0, 0, 0.5});
+  const auto answers = as_operator(assemble_triplets(std::move(inverse), map, map));
+  const LockedMotions locked(null_space_of({filled(map, {1})}), {filled(map, {3})}, {0}, answers);
+  std::vector<HeldRow> rows(1);
+  rows[0].weights = {{0, 1}};
+  EXPECT_EQ(locked.bears(rows)[0], 1);
+  EXPECT_NEAR(locked.take_out(rows)(0, 0), 1. / 3, 1e-15);
+  EXPECT_NEAR(rows[0].weights[0].second, 0, 1e-15);
+  EXPECT_EQ(1 / rows[0].response, 0);
+}
+
 TEST(LockedMotions, OfNothingChangeNothing) {
   std::vector<HeldRow> rows(1);
   rows[0].weights = {{0, 1}};
+  EXPECT_EQ(LockedMotions().bears(rows)[0], 0);
   EXPECT_EQ(LockedMotions().take_out(rows).size(), 0);
   EXPECT_EQ(rows[0].weights.size(), 1U);
 }

@@ -51,6 +51,8 @@ TEST(LockedResponse, PistonsOfOneTankKeepItsVolume) {
     EXPECT_LT(expected->normInf(), 1e-15) << also_twice;
     apply(*locked, *areas, velocity);
     EXPECT_LT(velocity.normInf(), 1e-15) << also_twice;
+    apply(*locked_response(response, directions, 0.25), *push, velocity);
+    EXPECT_NEAR(velocity.dot(*areas), 0.25, 1e-15);  // a quarter of the 1 m^3/s without the lock
   }
 }
 
