@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/errors.hpp"
 #include "interfaces/plug_in.hpp"
 #include "linear/types.hpp"
 
@@ -105,9 +106,12 @@ class ConstraintModel : public PlugIn {
   /// Replaces the target of the scene from the next step on: q + (t - time) rate, by coordinate
   /// [rad, m; their rates]. A program around a run calls it alike on all ranks, and again after a
   /// restart: checkpoints do not keep it. Throws InputError if there is no such joint, if it is
-  /// free, or if it has another number of coordinates. Local.
-  virtual void set_target(const std::string& joint, double time, const std::vector<double>& q,
-                          const std::vector<double>& rate) = 0;
+  /// free, or if it has another number of coordinates. Default: throws it for all. Local.
+  virtual void set_target(const std::string& joint, double /*time*/,
+                          const std::vector<double>& /*q*/, const std::vector<double>& /*rate*/) {
+    throw InputError(
+        fmt::format("The joint \"{}\" cannot be steered: \"{}\" take no targets.", joint, name()));
+  }
   /// Returns a description of the joints for `--explain`. Local.
   virtual std::string note() const = 0;
 };

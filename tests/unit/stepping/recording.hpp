@@ -129,8 +129,6 @@ class RecordingJoints : public ConstraintModel {
   int largest_block() const override { return 0; }
   void take_note(const JointImpulses&, double, double) override {}
   std::vector<JointState> states(double) const override { return {}; }
-  void set_target(const std::string&, double, const std::vector<double>&,
-                  const std::vector<double>&) override {}
   std::string note() const override { return ""; }
 
  private:
