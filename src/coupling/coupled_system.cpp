@@ -34,6 +34,7 @@ void CoupledSystem<dim>::freeze(const std::shared_ptr<const SurfaceSnapshot<dim>
       find_null_spaces(fluid_.regions(), fluid_.pressure_map(), coupling_transposed_);
 
   held_stiffness_ = Teuchos::null;
+  locked_directions_.clear();
   ++blocks_.geometry_version;
   ++blocks_.solids.version;
   blocks_.set_blocks(fluid_.pressure_block());
@@ -185,30 +186,20 @@ std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& co
 }
 
 template <int dim>
-std::vector<RCP<const Vector>> CoupledSystem<dim>::locked_directions() const {
-  std::vector<RCP<const Vector>> directions;
-  for (std::size_t k = 0; locks_solids() && k < blocks_.pressure_null_space.size(); ++k) {
-    const RCP<Vector> direction = make_vector(solids_.map());
-    coupling_transposed_->apply(*blocks_.pressure_null_space.vector(k), *direction);
-    directions.push_back(direction);
-  }
-  return directions;
+const std::vector<RCP<const Vector>>& CoupledSystem<dim>::locked_directions() const {
+  if (locks_solids() && locked_directions_.empty())
+    locked_directions_ = pushes_of(blocks_.pressure_null_space, *coupling_transposed_);
+  return locked_directions_;
 }
 
 /// Row 1, A p - B P y = r, along a null vector n of A: -n.B P y = n.r.
 template <int dim>
 std::vector<double> CoupledSystem<dim>::locked_rates(const Reduction& constraints) const {
-  std::vector<double> rates;
   if (!locks_solids())
-    return rates;
-  const NullSpace& pressures = blocks_.pressure_null_space;
-  const std::vector<double> sums = pressures.regions().sums_of(*pressure_row(constraints));
-  for (const auto& parts : pressures.vectors()) {
-    double rate = 0;
-    for (const NullSpace::Part& part : parts)
-      rate -= part.value * sums[part.region];
-    rates.push_back(rate);
-  }
+    return {};
+  std::vector<double> rates = components(blocks_.pressure_null_space, *pressure_row(constraints));
+  for (double& rate : rates)
+    rate = -rate;
   return rates;
 }
 

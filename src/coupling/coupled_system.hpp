@@ -62,8 +62,9 @@ class CoupledSystem {
   const NullSpace& null_space() const { return blocks_.null_space; }
   const NullSpace& pressure_null_space() const { return blocks_.pressure_null_space; }
   /// P^T B^T n of all null vectors n of A, if `locks_solids`: impulses to which solids do not
-  /// yield, of a pressure that is the same all over closed fluid [m^(dim-1)]. Collective.
-  std::vector<RCP<const Vector>> locked_directions() const;
+  /// yield, of a pressure that is the same all over closed fluid [m^(dim-1)]. Made once a geometry.
+  /// Collective.
+  const std::vector<RCP<const Vector>>& locked_directions() const;
   /// Returns d.y for each of these directions d, as `right_hand_side` demands it of the unknowns y
   /// [m^dim/s]. Collective.
   std::vector<double> locked_rates(const Reduction& constraints) const;
@@ -81,6 +82,7 @@ class CoupledSystem {
   Coupling<dim>& coupling_;
   std::shared_ptr<const SurfaceSnapshot<dim>> surface_;
   RCP<const CrsMatrix> coupling_transposed_;  ///< P^T B^T of the geometry; null without solids
+  mutable std::vector<RCP<const Vector>> locked_directions_;  ///< empty: not asked for yet
   BlockSystem blocks_, pressure_only_;
   double block_dt_ = 0;               ///< the dt of C in `blocks_`
   unsigned block_linearisation_ = 0;  ///< linearisation number of D in `blocks_`, see SolidSystem

@@ -83,8 +83,8 @@ struct ColumnRegions {
   std::vector<double> weight;  ///< by column of the result
 };
 
-/// Calls f(row, regions, values) for the rows of B^T chi of this rank that see a singular region:
-/// a region as often as a row has entries in it.
+/// Calls f(local row, regions, values) for the rows of B^T chi of this rank that see a singular
+/// region: a region as often as a row has entries in it.
 template <typename Function>
 void for_each_row(const CrsMatrix& coupling_transposed, const ColumnRegions& regions,
                   const Function& f) {
@@ -104,7 +104,7 @@ void for_each_row(const CrsMatrix& coupling_transposed, const ColumnRegions& reg
       entries.push_back(values(k) * regions.weight[column]);
     }
     if (!columns.empty())
-      f(columns, entries);
+      f(row, columns, entries);
   }
 }
 
@@ -157,7 +157,7 @@ Triangles local_triangles(const CrsMatrix& coupling_transposed, const ColumnRegi
     if (column >= 0)
       is_seen[column] = 1;
   }
-  for_each_row(coupling_transposed, regions, [&](const auto& columns, const auto&) {
+  for_each_row(coupling_transposed, regions, [&](int, const auto& columns, const auto&) {
     for (const int column : columns)
       tied.join(columns.front(), column);
     ++n_rows[columns.front()];
@@ -180,7 +180,7 @@ Triangles local_triangles(const CrsMatrix& coupling_transposed, const ColumnRegi
   std::vector<GrowingTriangle> growing;
   for (std::size_t group = 0; group < groups.size(); ++group)
     growing.emplace_back(groups[group], rows_of_group[group]);
-  for_each_row(coupling_transposed, regions, [&](const auto& columns, const auto& values) {
+  for_each_row(coupling_transposed, regions, [&](int, const auto& columns, const auto& values) {
     growing[group_of[tied.root(columns.front())]].add(columns, values);
   });
   Triangles result;
@@ -382,6 +382,22 @@ NullSpaces find_null_spaces(const PressureRegions& regions, const RCP<const Map>
       part.value *= columns.weight[part.region];
   }
   return {pressure.with(std::move(coupled)), pressure};
+}
+
+std::vector<RCP<const Vector>> pushes_of(const NullSpace& pressure,
+                                         const CrsMatrix& coupling_transposed) {
+  std::vector<RCP<Vector>> pushes;
+  for (std::size_t k = 0; k < pressure.size(); ++k)
+    pushes.push_back(make_vector(coupling_transposed.getRowMap()));
+  if (pushes.empty())
+    return {};
+  const ColumnRegions regions = regions_of_columns(coupling_transposed, pressure);
+  for_each_row(coupling_transposed, regions,
+               [&](int row, const std::vector<int>& columns, const std::vector<double>& values) {
+                 for (std::size_t k = 0; k < columns.size(); ++k)
+                   pushes[columns[k]]->sumIntoLocalValue(row, values[k]);
+               });
+  return {pushes.begin(), pushes.end()};
 }
 
 }  // namespace lockstep

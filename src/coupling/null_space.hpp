@@ -19,4 +19,8 @@ struct NullSpaces {
 NullSpaces find_null_spaces(const PressureRegions& regions, const RCP<const Map>& pressure_map,
                             const RCP<const CrsMatrix>& coupling_transposed);
 
+/// B^T n for each null vector n of the pressure block, in one pass over B^T. Collective.
+std::vector<RCP<const Vector>> pushes_of(const NullSpace& pressure,
+                                         const CrsMatrix& coupling_transposed);
+
 }  // namespace lockstep

@@ -39,8 +39,9 @@ template <int dim>
 struct ContactReport {
   int n_contacts = 0;  ///< number of contacts and joint limits
   int iterations = 0;
-  int n_solves = 0;     ///< coupled solves that held them; 0: they are not part of it
+  int n_solves = 0;     ///< coupled solves that held them
   double residual = 0;  ///< velocity at contacts that the last of these solves has left [m/s]
+  int n_outside = 0;    ///< phases in which they acted outside of the coupled solve: 0 or 1
   int n_crossings = 0;  ///< crossings of surfaces that are not rigid, which could not be prevented
   double deepest_overlap = 0;      ///< before resolution; 0 where nothing is resolved [m]
   Momentum<dim> external_impulse;  ///< from walls and prescribed solids on the dynamic ones, global

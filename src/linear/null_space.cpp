@@ -70,10 +70,9 @@ void add(const RowRegions& regions, const std::vector<double>& value, Vector& x)
 
 RCP<Vector> NullSpace::vector(std::size_t k) const {
   const auto result = make_vector(regions_->map);
-  std::vector<double> values(regions_->n_regions, 0);
-  for (const Part& part : vectors_[k])
-    values[part.region] = part.value;
-  add(*regions_, values, *result);
+  std::vector<double> factors(size(), 0);
+  factors[k] = 1;
+  add_vectors(*this, factors, *result);
   return result;
 }
 
@@ -127,22 +126,40 @@ NullSpace null_space_of(const std::vector<RCP<const Vector>>& vectors) {
   return {RowRegions::from(map, static_cast<int>(regions.size()), region_of_row), parts};
 }
 
-double project_out(const NullSpace& space, Vector& x) {
+std::vector<double> components(const NullSpace& space, const Vector& x) {
+  std::vector<double> result;
   if (space.empty())
-    return 0;
+    return result;
   const std::vector<double> sums = space.regions().sums_of(x);
-  std::vector<double> change(sums.size(), 0);
-  double removed = 0;
   for (const auto& parts : space.vectors()) {
     double component = 0;
     for (const NullSpace::Part& part : parts)
       component += part.value * sums[part.region];
-    for (const NullSpace::Part& part : parts)
-      change[part.region] -= component * part.value;
-    removed += component * component;
+    result.push_back(component);
   }
-  add(space.regions(), change, x);
-  return std::sqrt(removed);
+  return result;
+}
+
+void add_vectors(const NullSpace& space, const std::vector<double>& factors, Vector& x) {
+  if (space.empty())
+    return;
+  std::vector<double> values(space.regions().n_regions, 0);
+  for (std::size_t k = 0; k < space.size(); ++k) {
+    for (const NullSpace::Part& part : space.vectors()[k])
+      values[part.region] += factors[k] * part.value;
+  }
+  add(space.regions(), values, x);
+}
+
+double project_out(const NullSpace& space, Vector& x) {
+  std::vector<double> removed = components(space, x);
+  double squares = 0;
+  for (double& component : removed) {
+    squares += component * component;
+    component = -component;
+  }
+  add_vectors(space, removed, x);
+  return std::sqrt(squares);
 }
 
 double relative_part_removed(const NullSpace& space, Vector& x) {

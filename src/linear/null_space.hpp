@@ -61,6 +61,12 @@ class NullSpace {
 /// Collective.
 NullSpace null_space_of(const std::vector<RCP<const Vector>>& vectors);
 
+/// x . n for each vector n. One sum over ranks, and one pass over x. Collective.
+std::vector<double> components(const NullSpace& space, const Vector& x);
+
+/// x += the sum of the vectors, each times its factor. One pass over x. Local.
+void add_vectors(const NullSpace& space, const std::vector<double>& factors, Vector& x);
+
 /// Removes from x its components along the vectors; returns the norm of what was removed. One sum
 /// over ranks, and two passes over x. Collective.
 double project_out(const NullSpace& space, Vector& x);

@@ -137,7 +137,11 @@ void add_audit(Columns<HistoryRow<dim>>& columns) {
         [](const Row& row) {
           return row.report.contact_position.n_solves + row.report.contact_velocity.n_solves;
         }},
-       {{"contact_residual", "m/s", "velocity at contacts that the last of these has left"},
+       {{"contacts_outside", "1", "phases of the step in which contacts acted outside of these"},
+        [](const Row& row) {
+          return row.report.contact_position.n_outside + row.report.contact_velocity.n_outside;
+        }},
+       {{"contact_residual", "m/s", "velocity at contacts that the last of these solves has left"},
         [](const Row& row) {
           return std::max(row.report.contact_position.residual,
                           row.report.contact_velocity.residual);

@@ -95,15 +95,15 @@ bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
   return true;
 }
 
+namespace {
 /// Contact acts on V_S* = M_S^-1 momentum; its impulses go into the momentum. With implicit inner
 /// forces V_S* = (M_S - dt D)^-1 momentum, so that contact holds what it would have to at the end
 /// of the step, and forces are linearised there.
 template <int dim>
-ContactReport<dim> CoupledSolve<dim>::contact_before_solve(const StepContext<dim>& context,
-                                                           Vector& momentum) {
-  ScopedStage stage(timers_, "contact");
-  auto& solids = *components_.solids;
-  auto& contact = *components_.contact;
+ContactReport<dim> contact_before_solve(Components<dim>& components,
+                                        const StepContext<dim>& context, Vector& momentum) {
+  auto& solids = *components.solids;
+  auto& contact = *components.contact;
   const double dt = context.dt;
   if (has_implicit_forces(solids)) {
     const auto inverse = implicit_response<dim>(solids, dt);
@@ -130,6 +130,7 @@ ContactReport<dim> CoupledSolve<dim>::contact_before_solve(const StepContext<dim
   }
   return report;
 }
+}  // namespace
 
 template <int dim>
 MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& context,
@@ -148,20 +149,28 @@ MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& co
       end.contact_impulse = end.contact.impulse;
   }
   if (!holds_contacts() || !end.is_settled) {
+    const MotionWithContacts<dim> attempt = end;
     end = {};
     if (components_.contact && components_.solids->has_unknowns()) {
       const RCP<const Vector> at_rest = impulse_at_rest(components_, context.dt);
       momentum->update(1, *at_rest, 1);
       const auto impulse = rcp(new Vector(*momentum, Teuchos::Copy));
-      end.contact = contact_before_solve(context, *momentum);
+      {
+        ScopedStage stage(timers_, "contact");
+        end.contact = contact_before_solve(components_, context, *momentum);
+      }
       impulse->update(1, *momentum, -1);
       if (end.contact.n_contacts > 0)
         end.contact_impulse = impulse;
       momentum->update(-1, *at_rest, 1);
+      end.contact.n_solves = attempt.contact.n_solves;
+      end.contact.residual = attempt.contact.residual;
+      end.contact.n_outside = end.contact.n_contacts > 0 ? 1 : 0;
     }
     if (!drag.is_null())
       momentum->update(1, *drag, 1);
     end.solution = converge(context, momentum, nearby);
+    end.solution.report.add_work(attempt.solution.report);
   }
   if (end.solution.incompatibility > round_off) {
     const double time = context.step.end();

@@ -85,7 +85,6 @@ class CoupledSolve {
  private:
   bool improve(const StepContext<dim>& context, int n_solves, CoupledSolution& solution,
                Vector& momentum);
-  ContactReport<dim> contact_before_solve(const StepContext<dim>& context, Vector& momentum);
   RCP<Vector> expected_impulse(const StepContext<dim>& context, const Vector& momentum,
                                const Vector& velocity) const;
   void solve_held(const StepContext<dim>& context, const Vector& momentum,

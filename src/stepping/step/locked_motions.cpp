@@ -1,7 +1,6 @@
 #include "stepping/step/locked_motions.hpp"
 
 #include <Tpetra_Vector.hpp>
-#include <limits>
 #include <map>
 
 #include "base/communicator.hpp"
@@ -42,18 +41,15 @@ double own_part(const std::vector<std::pair<GlobalIndex, double>>& weights, cons
 
 }  // namespace
 
-LockedMotions::LockedMotions(const NullSpace& pressures, std::vector<RCP<const Vector>> directions,
+LockedMotions::LockedMotions(NullSpace pressures, const std::vector<RCP<const Vector>>& directions,
                              std::vector<double> given, RCP<const LinearOperator> inverse)
-    : solid_inverse_(std::move(inverse)) {
-  for (std::size_t k = 0; k < directions.size(); ++k) {
-    Weights direction = gathered(*directions[k]);
-    if (direction.empty())
-      continue;
-    directions_.push_back(std::move(direction));
-    pressures_.push_back(pressures.vector(k));
-    given_.push_back(given[k]);
-    const RCP<Vector> answer = make_vector(directions[k]->getMap());
-    apply(*solid_inverse_, *directions[k], *answer);
+    : solid_inverse_(std::move(inverse)),
+      pressures_(std::move(pressures)),
+      given_(std::move(given)) {
+  for (const RCP<const Vector>& direction : directions) {
+    directions_.push_back(gathered(*direction));
+    const RCP<Vector> answer = make_vector(direction->getMap());
+    apply(*solid_inverse_, *direction, *answer);
     answers_.push_back(answer);
   }
   if (empty())
@@ -81,11 +77,10 @@ Eigen::MatrixXd LockedMotions::along(const std::vector<HeldRow>& rows) const {
   return products;
 }
 
-std::vector<char> LockedMotions::bears(const std::vector<HeldRow>& rows) const {
+void LockedMotions::let_go(std::vector<HeldRow>& rows) const {
   constexpr double least_free = 0.01;  // a part of J C^-1 J^T; chosen, not varied by a page
-  std::vector<char> borne(rows.size(), 0);
   if (empty() || rows.empty())
-    return borne;
+    return;
   Vector impulse(answers_.front()->getMap()), velocity(impulse.getMap());
   std::vector<double> whole(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -97,20 +92,15 @@ std::vector<char> LockedMotions::bears(const std::vector<HeldRow>& rows) const {
     whole[i] = own_part(rows[i].weights, velocity);
   }
   sum_over_ranks(impulse.getMap()->getComm(), whole);
-  const Eigen::MatrixXd products = along(rows), levels = products * inverse_;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    borne[i] = whole[i] - products.row(row).dot(levels.row(row)) < least_free * whole[i];
-  }
-  return borne;
+  const Eigen::MatrixXd products = along(rows);
+  const Eigen::VectorXd locked = (products * inverse_).cwiseProduct(products).rowwise().sum();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (whole[i] - locked[static_cast<Eigen::Index>(i)] < least_free * whole[i])
+      rows[i].stiffness = 0;
 }
 
 Eigen::MatrixXd LockedMotions::take_out(std::vector<HeldRow>& rows) const {
-  const Eigen::MatrixXd products = along(rows);
-  if (products.size() == 0)
-    return products;
-  const Eigen::MatrixXd levels = products * inverse_;
-  const std::vector<char> borne = bears(rows);
+  const Eigen::MatrixXd levels = along(rows) * inverse_;
   for (Eigen::Index i = 0; i < levels.rows(); ++i) {
     std::map<GlobalIndex, double> weights(rows[i].weights.begin(), rows[i].weights.end());
     for (Eigen::Index k = 0; k < levels.cols(); ++k) {
@@ -121,21 +111,15 @@ Eigen::MatrixXd LockedMotions::take_out(std::vector<HeldRow>& rows) const {
       rows[i].velocity -= levels(i, k) * given_[k];
     }
     rows[i].weights.assign(weights.begin(), weights.end());
-    if (borne[i])
-      rows[i].response = std::numeric_limits<double>::infinity();
   }
   return levels;
 }
 
 void LockedMotions::add_pressure(const Eigen::MatrixXd& levels, const std::vector<double>& impulses,
                                  Vector& pressure) const {
-  for (Eigen::Index k = 0; k < levels.cols(); ++k) {
-    double level = 0;
-    for (Eigen::Index i = 0; i < levels.rows(); ++i)
-      level += levels(i, k) * impulses[i];
-    if (level != 0)
-      pressure.update(level, *pressures_[k], 1);
-  }
+  const Eigen::Map<const Eigen::VectorXd> pushes(impulses.data(), levels.rows());
+  const Eigen::VectorXd factors = levels.transpose() * pushes;
+  add_vectors(pressures_, {factors.begin(), factors.end()}, pressure);
 }
 
 }  // namespace lockstep

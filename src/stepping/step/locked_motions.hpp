@@ -25,16 +25,15 @@ class LockedMotions {
   LockedMotions() = default;
   /// `pressures`: n; `directions`: d [m^(dim-1)]; `given`: d.V [m^dim/s]; `inverse`: C^-1 of the
   /// unknowns. Collective.
-  LockedMotions(const NullSpace& pressures, std::vector<RCP<const Vector>> directions,
+  LockedMotions(NullSpace pressures, const std::vector<RCP<const Vector>>& directions,
                 std::vector<double> given, RCP<const LinearOperator> inverse);
 
   bool empty() const { return directions_.empty(); }
-  /// Rows that fluid bears all but alone (1): how both share them is no more than round-off, so
-  /// that a solve takes the impulses that contact has decided. Collective.
-  std::vector<char> bears(const std::vector<HeldRow>& rows) const;
-  /// Replaces rows by J' and its velocities, and the responses of those that fluid bears by
-  /// infinite ones, with which nothing holds them. Returns `levels`, one row a held row, one column
-  /// a direction [1/m^(dim-1)]. Collective.
+  /// Takes the stiffness of rows that fluid bears all but alone: how both share them is no more
+  /// than round-off, so that a solve takes the impulses that contact has decided. Collective.
+  void let_go(std::vector<HeldRow>& rows) const;
+  /// Replaces rows by J' and its velocities, and returns `levels`, one row a held row, one column a
+  /// direction [1/m^(dim-1)]. Collective.
   Eigen::MatrixXd take_out(std::vector<HeldRow>& rows) const;
   /// p̂ += n_k levels_k . impulses. Local.
   void add_pressure(const Eigen::MatrixXd& levels, const std::vector<double>& impulses,
@@ -46,7 +45,7 @@ class LockedMotions {
   Eigen::MatrixXd along(const std::vector<HeldRow>& rows) const;
 
   RCP<const LinearOperator> solid_inverse_;  ///< C^-1
-  std::vector<RCP<const Vector>> pressures_;
+  NullSpace pressures_;
   std::vector<Weights> directions_;         ///< by dof, the same on all ranks
   std::vector<RCP<const Vector>> answers_;  ///< C^-1 d
   std::vector<double> given_;

@@ -71,8 +71,11 @@ void PositionUpdate<dim>::solve(const StepContext<dim>& context, const RCP<const
     found.solution = held.solution;
     found.path.contact = held.contact;
   } else {
-    held = {};
     found.solution = solve_.converge(context, momentum, nearby);
+    found.solution.report.add_work(held.solution.report);
+    found.path.contact.n_solves = held.contact.n_solves;
+    found.path.contact.residual = held.contact.residual;
+    held = {};
   }
   found.velocity = found.solution.velocity;
   found.path.report = found.solution.report;
@@ -122,6 +125,8 @@ void PositionUpdate<dim>::keep_limits(const StepContext<dim>& context, Found& fo
     add_last(components_.contact->resolve(solids, ContactPhase::position, dt, *found.velocity,
                                           joint_response<dim>(solids, context.dt)),
              found.path.contact);
+    if (!found.holds_contacts)
+      found.path.contact.n_outside = found.path.contact.n_contacts > 0 ? 1 : 0;
   }
 }
 

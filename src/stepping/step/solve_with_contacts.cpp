@@ -154,11 +154,11 @@ RCP<const CrsMatrix> mass_of_fluid_near(const Components<dim>& components) {
   return lumped;
 }
 
-/// Chooses the stiffness of rows: no so large one beside a light body's own mass that the round-off
-/// of K J V reaches the tolerance of the solve in the directions that are free.
+/// Lets no stiffness be so large beside a light body's own mass that the round-off of K J V reaches
+/// the tolerance of the solve in the directions that are free.
 template <int dim>
-void set_stiffness(const Components<dim>& components, double tolerance_of_solve, double dt,
-                   std::vector<HeldRow>& rows) {
+void soften(const Components<dim>& components, double tolerance_of_solve, double dt,
+            std::vector<HeldRow>& rows) {
   if (rows.empty())
     return;
   constexpr double round_off = 10 * std::numeric_limits<double>::epsilon();
@@ -173,8 +173,7 @@ void set_stiffness(const Components<dim>& components, double tolerance_of_solve,
         own[k] += weight * weight * of_dofs[local];
   sum_over_ranks(solids.comm(), own);
   for (std::size_t k = 0; k < rows.size(); ++k)
-    rows[k].stiffness =
-        1 / std::max(rows[k].response / stiffness_factor, round_off / tolerance_of_solve * own[k]);
+    rows[k].stiffness = std::min(rows[k].stiffness, tolerance_of_solve / (round_off * own[k]));
 }
 
 /// True if closed fluid locks rigid solids. Of soft ones it ties all nodes to one another, and
@@ -202,7 +201,7 @@ std::vector<double> opposite_impulses(const std::vector<HeldRow>& rows) {
   return impulses;
 }
 
-/// Where a solve begins: `nearby`, else what the last step has left; less a pressure.
+/// Returns the unknowns at which a solve begins, to change: `nearby`, else those of the last step.
 template <int dim>
 BlockVector begin_of_solve(const Components<dim>& components, const StepContext<dim>& context,
                            const BlockVector* nearby) {
@@ -222,14 +221,13 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
-/// The largest velocity of those rows that fluid does not bear [m/s]. Collective.
-double largest_held(const LockedMotions& locked, const std::vector<HeldRow>& rows,
-                    const Vector& velocity, const Communicator& comm) {
+/// The largest velocity of rows that a solve holds [m/s]. Collective.
+double largest_held(const std::vector<HeldRow>& rows, const Vector& velocity,
+                    const Communicator& comm) {
   const std::vector<double> values = values_of(rows, velocity, comm);
-  const std::vector<char> borne = locked.bears(rows);
   double most = 0;
   for (std::size_t k = 0; k < rows.size(); ++k)
-    most = std::max(most, borne[k] ? 0 : std::abs(values[k]));
+    most = std::max(most, rows[k].stiffness > 0 ? std::abs(values[k]) : 0);
   return most;
 }
 
@@ -306,7 +304,9 @@ ContactReport<dim> CoupledSolve<dim>::decide(const StepContext<dim>& context,
   ScopedStage stage(timers_, "contact");
   ContactReport<dim> report = components_.contact->decide(*components_.solids, phase_of(context),
                                                           context.step.dt, velocity, response);
-  set_stiffness(components_, options_.tolerance, context.dt, report.held);
+  for (HeldRow& row : report.held)
+    row.stiffness = stiffness_factor / row.response;
+  soften(components_, options_.tolerance, context.dt, report.held);
   return report;
 }
 
@@ -397,7 +397,7 @@ void CoupledSolve<dim>::solve_held(const StepContext<dim>& context, const Vector
   const Eigen::MatrixXd levels = locked.take_out(free.held);
   // A row that is near to what fluid locks is a small difference: its round-off is larger.
   if (levels.size() > 0)
-    set_stiffness(components_, 0.1 * options_.tolerance, context.dt, free.held);
+    soften(components_, 0.1 * options_.tolerance, context.dt, free.held);
   hold(free, *pushed);
   BlockVector begin;
   if (levels.size() > 0) {
@@ -432,11 +432,12 @@ ContactReport<dim> CoupledSolve<dim>::compare(const StepContext<dim>& context,
   motion.free_velocity = free;
   Vector decided(*free, Teuchos::Copy);
   ContactReport<dim> next = decide(context, response, decided);
+  locked.let_go(next.held);
   const RCP<const Vector> stopped = difference(decided, *free);
   decided.update(-1, *motion.solution.velocity, 1);
   const auto& comm = components_.solids->comm();
-  motion.contact.residual = std::max(largest_held(locked, motion.contact.held, decided, comm),
-                                     largest_held(locked, next.held, decided, comm));
+  motion.contact.residual = std::max(largest_held(motion.contact.held, decided, comm),
+                                     largest_held(next.held, decided, comm));
   scale = std::max(context.dt * components_.fluid->gravity().norm(),
                    largest(values_of(next.held, *stopped, comm)));
   return next;
@@ -467,12 +468,15 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
   const double ordinary = ordinary_velocity(components_, context, held.contact.held);
   const bool is_locked = locks_rigid_solids(components_, system_);
   LockedMotions locked;
+  SolveReport replaced;  // work of solves that others replace
   RCP<const Vector> last_impulse, last_velocity;
   int n_solves = 0, last_gain = 1;
   while (!is_locked ||
          largest_change(held.contact.held) <= most_change<dim>(components_) * ordinary) {
-    if (locked.empty() && is_locked && !held.contact.held.empty())
+    if (locked.empty() && is_locked && !held.contact.held.empty()) {
       locked = locked_motions(components_, system_, context);
+      locked.let_go(held.contact.held);
+    }
     try {
       solve_held(context, *momentum, n_solves > 0 ? &best.solution.unknowns : nearby, locked, held);
     } catch (const SolveError&) {
@@ -492,7 +496,9 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
     if (n_solves == 1 || held.contact.residual < 0.5 * best.contact.residual)
       last_gain = n_solves;
     if (n_solves == 1 || held.contact.residual < best.contact.residual)
-      best = held;
+      std::swap(best, held);
+    if (n_solves > 1)
+      replaced.add_work(held.solution.report);
     const bool is_fair = best.contact.residual <= fair_tolerance * scale;
     if (best.contact.residual <= tolerance * scale || n_solves == most_solves ||
         n_solves - last_gain == (is_fair ? 1 : most_without_gain))
@@ -502,6 +508,7 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
   best.is_settled =
       !is_locked || (n_solves > 0 && best.contact.residual <= coarse_tolerance * ordinary);
   best.contact.n_solves = best.contact.held.empty() ? 0 : n_solves;
+  best.solution.report.add_work(replaced);
   release(context, best);
   return best;
 }

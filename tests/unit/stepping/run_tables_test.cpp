@@ -173,6 +173,7 @@ Texts expected_history(const StepReport<dim>& report) {
       {"contacts", report.contact_position.n_contacts},
       {"deepest_overlap", report.contact_position.deepest_overlap},
       {"contact_solves", report.contact_position.n_solves + report.contact_velocity.n_solves},
+      {"contacts_outside", report.contact_position.n_outside + report.contact_velocity.n_outside},
       {"contact_residual", report.contact_velocity.residual},  // the larger one
       {"clamped_elements", double(report.n_clamped_elements)}};
   for (const auto& [name, value] : numbers)
