@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "coupling/solid_totals.hpp"
+#include "linear/action_operator.hpp"
 #include "linear/block_diagonal.hpp"
 #include "linear/triplet_matrix.hpp"
 #include "solve/soft/exact_inverse.hpp"
@@ -183,14 +184,47 @@ bool locks_rigid_solids(const Components<dim>& components, const CoupledSystem<d
   return system.locks_solids() && !has_soft_solids(*components.solids);
 }
 
+/// P C^-1 P^T, velocities of all dofs from impulses on them. Collective, and so is every
+/// application.
+RCP<const LinearOperator> on_all_dofs(const Reduction& constraints, const RCP<const Map>& map,
+                                      const RCP<const LinearOperator>& inverse) {
+  if (constraints.is_identity())
+    return inverse;
+  return action_operator(map, [=](const Vector& impulse, Vector& velocity) {
+    Vector reduced(impulse, Teuchos::Copy);
+    constraints.restrict(reduced);
+    apply(*inverse, reduced, velocity);
+    constraints.expand_change(velocity);
+  });
+}
+
 /// Motions that closed fluid does not let rigid solids make. Collective.
 template <int dim>
 LockedMotions locked_motions(const Components<dim>& components, const CoupledSystem<dim>& system,
                              const StepContext<dim>& context) {
   const auto& solids = *components.solids;
   const auto block = solids.solid_block(components.coupling->added_mass(), context.dt);
-  return {system.pressure_null_space(), system.locked_directions(),
-          system.locked_rates(context.constraints), exact_inverse(block, "solids in contact")};
+  return {
+      system.pressure_null_space(), system.locked_directions(),
+      system.locked_rates(context.constraints),
+      on_all_dofs(context.constraints, solids.map(), exact_inverse(block, "solids in contact"))};
+}
+
+/// To M dV - J^T l, of a response dV to contacts, adds B^T p of the pressures in closed fluid that
+/// the response has taken into account. Collective.
+template <int dim>
+void add_locked_push(const Components<dim>& components, const CoupledSystem<dim>& system,
+                     const Reduction& constraints, Vector& reactions) {
+  if (!system.locks_solids())
+    return;
+  Vector rest(reactions, Teuchos::Copy);
+  constraints.restrict(rest);
+  std::vector<double> levels = shares_along(system.locked_directions(), rest);
+  for (double& level : levels)
+    level = -level;
+  const auto pressure = make_vector(components.fluid->pressure_map());
+  add_vectors(system.pressure_null_space(), levels, *pressure);
+  components.coupling->coupling_transposed()->apply(*pressure, reactions, Teuchos::NO_TRANS, 1, 1);
 }
 
 /// The impulses of rows by the contact model, with the opposite sign.
@@ -260,8 +294,7 @@ double largest_change(const std::vector<HeldRow>& rows) {
 
 template <int dim>
 bool CoupledSolve<dim>::holds_contacts() const {
-  return components_.contact && components_.solids->has_unknowns() &&
-         (!system_.locks_solids() || !components_.solids->joints());
+  return components_.contact && components_.solids->has_unknowns();
 }
 
 template <int dim>
@@ -520,6 +553,7 @@ RCP<Vector> CoupledSolve<dim>::reactions_to_contacts(const StepContext<dim>& con
   const auto reactions = rcp(new Vector(*motion.contact.impulse, Teuchos::Copy));
   apply(*solids.full_block(mass_of_fluid_near(components_), context.dt),
         *difference(*motion.solution.velocity, *motion.free_velocity), *reactions, 1, -1);
+  add_locked_push(components_, system_, context.constraints, *reactions);
   context.constraints.keep_reactions(*reactions);
   return reactions;
 }
