@@ -268,18 +268,63 @@ double ImpulseSolver<dim>::relax(Row& row) {
   return row.law.friction > 0 ? felt.norm() : std::abs(felt[0]);
 }
 
+/// Adds to the impulses `factor` times `direction_`, to which the last sweep's change then is
+/// added: the next direction of nonlinear conjugate gradients.
+template <int dim>
+void ImpulseSolver<dim>::go_on(double factor) {
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    Row& row = rows_[k];
+    const Point<dim> change = row.impulse - swept_from_[k], more = factor * direction_[k];
+    direction_[k] = change + more;
+    if (!more.isZero(0)) {
+      row.impulse += more;
+      push(row, row.frame * more);
+    }
+  }
+}
+
+/// The energy of the last sweep's changes, of each contact by itself [J].
+template <int dim>
+double ImpulseSolver<dim>::energy_of_sweep() const {
+  double energy = 0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const Point<dim> change = rows_[k].impulse - swept_from_[k];
+    energy += change.dot(rows_[k].law.mobility * change);
+  }
+  return energy;
+}
+
+/// Each sweep is a step of a gradient for nonlinear conjugate gradients (Silcowitz-Hansen, Niebe
+/// and Erleben 2010), which need a fiftieth of the sweeps in stacks of unequal masses.
 template <int dim>
 int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance, double negligible) {
   extend_limits();
-  int sweep = 0;
-  for (double change = 1e300; sweep < maximum_sweeps && !(change <= tolerance); ++sweep) {
-    change = limits_.relax(velocity_by_id(), negligible);
-    for (Row& row : rows_)
-      change = std::max(change, relax(row));
+  direction_.assign(rows_.size(), Point<dim>::Zero());
+  double last_energy = 0;
+  int n_sweeps = 0;
+  for (double change = 1e300; n_sweeps < maximum_sweeps && !(change <= tolerance); ++n_sweeps) {
+    if (n_sweeps > 0) {
+      const double energy = energy_of_sweep();
+      go_on(energy < last_energy ? energy / last_energy : 0);
+      last_energy = energy;
+    }
+    change = sweep(negligible);
   }
   if (responds() && n_contacts() > 0)
     find_velocity();
-  return sweep;
+  return n_sweeps;
+}
+
+/// Returns the largest change of a velocity at a contact or limit [m/s].
+template <int dim>
+double ImpulseSolver<dim>::sweep(double negligible) {
+  swept_from_.clear();
+  for (const Row& row : rows_)
+    swept_from_.push_back(row.impulse);
+  double change = limits_.relax(velocity_by_id(), negligible);
+  for (Row& row : rows_)
+    change = std::max(change, relax(row));
+  return change;
 }
 
 template <int dim>

@@ -107,6 +107,9 @@ class ImpulseSolver {
   Point<dim> relative_velocity(const Row& row) const;
   void push(const Row& row, const Point<dim>& impulse);
   double relax(Row& row);
+  double sweep(double negligible);
+  void go_on(double factor);
+  double energy_of_sweep() const;
   bool slides(const Row& row) const;
   /// Calls f(row, direction, target, impulse, response) for what a coupled solve is to hold.
   template <typename Function>
@@ -124,6 +127,7 @@ class ImpulseSolver {
   std::vector<double> velocity_, active_, given_;
   VelocityRow<dim> velocity_row_;  ///< for use by add_entries alone
   std::vector<Row> rows_;
+  std::vector<Point<dim>> swept_from_, direction_;  ///< impulses of rows, in their frames
   std::vector<Entry> jacobian_, response_;
   LimitImpulses limits_;
 };
