@@ -40,6 +40,7 @@ class Tool:
 
 OTHER_PROGRAM = "it compares with another program: choose one, and name it with --against"
 TOOL_PAGES = {
+    "contact-rest": Tool(["tools/measure-rest"], [], ["tests/support/resting_cases.py", "src", "packages/contact", "packages/rigid", "packages/faces"]),
     "discretizations": Tool(["tools/compare-discretizations"], [], ["docs/results/heave-decay.csv", "tools/compare-discretizations"]),
     "histories": Tool(["tools/compare-histories --against OTHER/simulate"], ["xml-params/scenes/*.xml"], by_hand=OTHER_PROGRAM),
     "histories-ranks": Tool(["tools/compare-histories --ranks 2"], ["xml-params/scenes/*.xml"]),

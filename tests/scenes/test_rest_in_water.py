@@ -131,7 +131,7 @@ class RestInWater(unittest.TestCase):
         """Two rafters, joined at the ridge, lean on a ball between them, which pinches off the water below it. Beside such water contact with
         joints acted before and after the coupled solve: with flux and the paper's step the roof shook at 8 mm/s for ever."""
         radius, thickness, slope = .12, .04, math.sqrt(.5)
-        ridge = radius + radius / slope  # of the undersides, which touch the ball at 45 degrees
+        ridge = radius + radius / slope  # height of the undersides, which touch the ball at 45 degrees
         rafters = {name: box((ridge / slope, thickness), (.5 + side * (ridge + thickness * slope) / 2, (ridge + thickness * slope) / 2), 2000.,
                              Rotation=-side * math.pi / 4, Friction=.5) for name, side in (("Left", -1), ("Right", 1))}
         stone = {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": radius}, "Position": (.5, radius), "Density": 2500., "Friction": .5}

@@ -37,15 +37,15 @@ TYPED_TEST(Resting, TheFloorCarriesAllOfAColumn) {
     EXPECT_LT(world.state(i).velocity.norm(), 0.01 * g * dt) << i;
 }
 
-/// Each second body weighs a hundredth of those beside it, so that a load goes up and down through
-/// it. By plain sweeps a twentieth of g dt is left then, and is after 16 000 of them.
+/// Each second body weighs a tenth of those beside it, so that a load goes up and down through it.
+/// By plain sweeps a twentieth of g dt is left after 4000 of them.
 TYPED_TEST(Resting, LightBodiesCarryHeavyOnes) {
   constexpr int dim = TypeParam::value;
   const double dt = 0.01;
   std::vector<RigidBody<dim>> bodies;
   for (int i = 0; i < 6; ++i) {
     bodies.push_back(rough(box<dim>(4 * h, up<dim>((2 + 4 * i) * h), 4 * h), 0.5));
-    const double factor = i % 2 == 0 ? 0.01 : 1;
+    const double factor = i % 2 == 0 ? 0.1 : 1;
     bodies.back().density *= factor;
     bodies.back().mass *= factor;
     bodies.back().inertia *= factor;
