@@ -66,11 +66,44 @@ Tangent<3> at_angle(double angle) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// Part of d w_t across t: zero at the angle of the slip [m/s 1/kg].
+double cross(const Tangent<3>& a, const Tangent<3>& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
+
+/// Part of d w_t across its direction: zero at the angle of the slip [m/s 1/kg].
 double across(double angle, const CoulombContact<3>& contact, const Point<3>& v) {
   const Tangent<3> t = at_angle(angle);
+  return cross(slip_along<3>(t, contact, v).velocity, t);
+}
+
+/// Newton's change of the angle of t towards the zero of `across`.
+double change_of_angle(const Tangent<3>& t, const CoulombContact<3>& contact, const Point<3>& v) {
+  const Tangent<3> turned(-t[1], t[0]);
+  const Tangent<3> row = contact.mobility.row(0).tail<2>(), v_t = v.tail<2>();
   const Tangent<3> velocity = slip_along<3>(t, contact, v).velocity;
-  return velocity[0] * t[1] - velocity[1] * t[0];
+  const Tangent<3> slope =
+      -contact.friction *
+      (row.dot(turned) * v_t - v[0] * (contact.mobility.bottomRightCorner<2, 2>() * turned));
+  return -cross(velocity, t) / (cross(slope, t) + cross(velocity, turned));
+}
+
+/// Returns the direction of slip to which Newton's method goes from an angle, if it comes so far
+/// within `width` of it; else zero. Most sweeps turn a slip by less.
+Tangent<3> slip_beside(double begin, double width, const CoulombContact<3>& contact,
+                       const Point<3>& v) {
+  constexpr int most_steps = 8;
+  constexpr double is_exact_after = 1e-8;  // a change whose square is round-off
+  double angle = begin, change = 1;
+  for (int step = 0; step < most_steps && std::abs(change) > is_exact_after; ++step) {
+    change = change_of_angle(at_angle(angle), contact, v);
+    angle += change;
+    if (!(std::abs(angle - begin) <= width))
+      return Tangent<3>::Zero();
+  }
+  const Tangent<3> t = at_angle(angle);
+  const bool is_slip =
+      std::abs(change) <= is_exact_after && is_valid<3>(t, slip_along<3>(t, contact, v));
+  return is_slip ? t : Tangent<3>::Zero();
 }
 
 /// Returns the zero of `across` between two angles at which it has these values of opposite signs,
@@ -126,12 +159,13 @@ Point<3> slipping(const CoulombContact<3>& contact, const Point<3>& v, const Poi
   const bool has_slipped = !last.tail<2>().isZero(0);
   const double begin = has_slipped ? std::atan2(-last[2], -last[1]) : std::atan2(v[2], v[1]);
   // Two zeros in one of 36 brackets are seen in one of random mobilities in a thousand.
-  for (const int n_brackets : {36, 1440}) {
-    const Tangent<3> t = slip_near(begin, n_brackets, contact, v);
-    if (!t.isZero(0))
-      return impulse_along<3>(t, slip_along<3>(t, contact, v).d, contact.friction, v[0]);
-  }
-  return without_friction<3>(contact, v);
+  Tangent<3> t = slip_beside(begin, 2 * M_PI / 36, contact, v);
+  for (const int n_brackets : {36, 1440})
+    if (t.isZero(0))
+      t = slip_near(begin, n_brackets, contact, v);
+  if (t.isZero(0))
+    return without_friction<3>(contact, v);
+  return impulse_along<3>(t, slip_along<3>(t, contact, v).d, contact.friction, v[0]);
 }
 
 }  // namespace
