@@ -43,6 +43,7 @@ class FractionPlanes {
   /// Distance from the point at `offset` cells from the lower corner of a mixed cell to its
   /// liquid's surface [cells].
   double distance_to(int cell, const Point<dim>& offset) const;
+  double distance_in(const SolidCells<dim>& solids, const CellField& fraction, int cell) const;
 
   const MacDomain<dim>& domain_;
   std::array<CellField, dim + 1> numbers_;  ///< normals, and constants
