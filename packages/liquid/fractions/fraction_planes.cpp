@@ -63,7 +63,7 @@ Point<dim> place_of(const Index<dim>& offset) {
   return place;
 }
 
-/// Part of a cell that the lesser of liquid and void fills.
+/// Part of a cell that the lesser of liquid and what is not liquid fills [1].
 double thickness(double fraction) {
   return std::min(fraction, 1 - fraction);
 }
@@ -170,7 +170,7 @@ double FractionPlanes<dim>::distance_to(int cell, const Point<dim>& offset) cons
 template <int dim>
 double FractionPlanes<dim>::distance_in(const SolidCells<dim>& solids, const CellField& fraction,
                                         int cell) const {
-  constexpr double thin = 1e-3;  // of a cell; chosen, not varied by a page
+  constexpr double thin = 1e-3;  // part of a cell [1]; chosen, not varied by a page
   const Point<dim> center = Point<dim>::Constant(0.5);
   const double own = distance_to(cell, center), layer = thickness(fraction[cell]);
   if (layer >= thin)

@@ -26,8 +26,8 @@ constexpr double stiffness_factor = 1e5;
 /// Velocity by which solve and contact model may differ, over that which gravity and impacts ask
 /// for [1].
 constexpr double tolerance = 1e-5;
-/// Velocity by which they may differ where one more solve has gained nothing, over that, too: what
-/// the contact model itself leaves by its "Tolerance" [1].
+/// Velocity by which they may differ where one more solve has gained nothing, over that, too [1]:
+/// without it rag-doll takes a sixth more solves, mixed-solids a tenth more seconds.
 constexpr double fair_tolerance = 1e-4;
 /// Velocity by which they may differ beside closed fluid, over that which gravity gives in the step
 /// and contacts have before it [1]. Chosen, not varied by a page.

@@ -73,8 +73,8 @@ TEST(VolumeOfFluid, ShowsTheDistanceToAPlane) {
   expect_plane_is_found<3>();
 }
 
-/// Water whose surface lies at 0.6 of a layer of cells, above it a wisp, and below it a bubble of
-/// void as thin: the distances of their cells' centres to the surface go over from that one's to
+/// Water whose surface lies at 0.6 of a layer of cells, above it a wisp, and below it a bubble as
+/// thin: the distances of their cells' centres to the surface go over from that one's to
 /// their own as they grow to a thousandth of a cell.
 template <int dim>
 void expect_wisps_move_no_surface(double thickness, double above, double below) {
