@@ -36,17 +36,6 @@ bool touches(const MacDomain<dim>& domain, const SolidCells<dim>& solids, const 
   return false;
 }
 
-template <int dim>
-bool is_beside_other(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
-                     const CellField& liquid, int cell) {
-  for (int i = 0; i < 2 * dim; ++i) {
-    const int other = solids.seen_neighbor(grid, cell, i / 2, i % 2);
-    if (other >= 0 && (liquid[cell] > 0.5) != (liquid[other] > 0.5))
-      return true;
-  }
-  return false;
-}
-
 /// Liquid components and their volume defects [cells].
 template <int dim>
 class Books {
@@ -92,15 +81,16 @@ class Books {
 
  private:
   /// Capacity of a cell: the liquid it takes (or gives) per cell that the surface moves, roughly
-  /// the area of the surface in it [1].
+  /// the area of the surface in it [1]. An empty cell above one with a surface takes none, and a
+  /// full one below it gives none: a trace in it would be a second surface.
   double redistribution_weight(int cell, bool takes) const {
     const double liquid = fractions_.liquid[cell];
     if (is_mixed(liquid))
       return 4 * liquid * (1 - liquid);
     const bool can = takes ? liquid < 0.5 : liquid > 0.5;
     const bool near = std::abs(phi_[cell]) < reach_of_labels * domain_.spacing();
-    return can && near && is_beside_other(domain_.grid, solids_, fractions_.liquid, cell) ? 0.25
-                                                                                          : 0;
+    const bool jumps = is_beside_full_jump(domain_.grid, solids_, fractions_.liquid, cell);
+    return can && near && jumps ? 0.25 : 0;
   }
   void add_up() {
     for (auto* sums : {&defect_, &rooms_[0], &rooms_[1], &share_})

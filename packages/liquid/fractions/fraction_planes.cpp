@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "grid/flagged_tiles.hpp"
 
@@ -54,21 +53,16 @@ std::array<Around<dim>, n_around<dim>> cells_around(const TiledGrid<dim>& grid,
   return result;
 }
 
-/// An offset in cells as a vector.
+/// Weight of a neighbour in Youngs' gradient along `axis`.
 template <int dim>
-Point<dim> place_of(const Index<dim>& offset) {
-  Point<dim> place;
+double youngs_weight(const Index<dim>& offset, int axis) {
+  double weight = offset[axis];
   for (int a = 0; a < dim; ++a)
-    place[a] = offset[a];
-  return place;
+    weight *= a == axis || offset[a] != 0 ? 1 : 2;
+  return weight;
 }
+}  // namespace
 
-/// Part of a cell that the lesser of liquid and what is not liquid fills [1].
-double thickness(double fraction) {
-  return std::min(fraction, 1 - fraction);
-}
-
-/// Full beside empty, without a plane in either.
 template <int dim>
 bool is_beside_full_jump(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
                          const CellField& fraction, int cell) {
@@ -80,16 +74,6 @@ bool is_beside_full_jump(const TiledGrid<dim>& grid, const SolidCells<dim>& soli
   }
   return false;
 }
-
-/// Weight of a neighbour in Youngs' gradient along `axis`.
-template <int dim>
-double youngs_weight(const Index<dim>& offset, int axis) {
-  double weight = offset[axis];
-  for (int a = 0; a < dim; ++a)
-    weight *= a == axis || offset[a] != 0 ? 1 : 2;
-  return weight;
-}
-}  // namespace
 
 template <int dim>
 Point<dim> FractionPlanes<dim>::normal(const SolidCells<dim>& solids, const CellField& fraction,
@@ -163,25 +147,6 @@ double FractionPlanes<dim>::distance_to(int cell, const Point<dim>& offset) cons
   return std::max((offset - foot).norm(), std::abs(above) / std::sqrt(squares));
 }
 
-/// Distance from the centre of a mixed cell to its liquid's surface [cells]. Liquid, or what is
-/// left to fill the cell, thinner than `thin` counts the less the thinner it is: the surface is
-/// that of the cells around with more of it. Without that, 1e-10 of a cell moved the surface of
-/// water at rest by up to half a cell.
-template <int dim>
-double FractionPlanes<dim>::distance_in(const SolidCells<dim>& solids, const CellField& fraction,
-                                        int cell) const {
-  constexpr double thin = 1e-3;  // part of a cell [1]; chosen, not varied by a page
-  const Point<dim> center = Point<dim>::Constant(0.5);
-  const double own = distance_to(cell, center), layer = thickness(fraction[cell]);
-  if (layer >= thin)
-    return own;
-  double beside = std::numeric_limits<double>::infinity();
-  for (const Around<dim>& other : cells_around(domain_.grid, solids, cell))
-    if (is_mixed(fraction[other.cell]) && thickness(fraction[other.cell]) > layer)
-      beside = std::min(beside, distance_to(other.cell, center - place_of<dim>(other.offset)));
-  return std::isinf(beside) ? own : own + (1 - layer / thin) * std::max(0.0, beside - own);
-}
-
 template <int dim>
 void FractionPlanes<dim>::set_distance(const SolidCells<dim>& solids,
                                        const std::vector<char>& tiles, const CellField& fraction,
@@ -194,12 +159,15 @@ void FractionPlanes<dim>::set_distance(const SolidCells<dim>& solids,
       return;
     double distance = cut_off / h;
     if (is_mixed(fraction[cell])) {
-      distance = distance_in(solids, fraction, cell);
+      distance = distance_to(cell, center);
     } else {
-      for (const Around<dim>& other : cells_around(grid, solids, cell))
+      for (const Around<dim>& other : cells_around(grid, solids, cell)) {
+        Point<dim> place = center;
+        for (int a = 0; a < dim; ++a)
+          place[a] -= other.offset[a];
         if (is_mixed(fraction[other.cell]))
-          distance =
-              std::min(distance, distance_to(other.cell, center - place_of<dim>(other.offset)));
+          distance = std::min(distance, distance_to(other.cell, place));
+      }
       if (is_beside_full_jump(grid, solids, fraction, cell))
         distance = std::min(distance, 0.5);
     }
@@ -209,6 +177,10 @@ void FractionPlanes<dim>::set_distance(const SolidCells<dim>& solids,
   domain_.halo.fill(phi);
 }
 
+template bool is_beside_full_jump<2>(const TiledGrid<2>&, const SolidCells<2>&, const CellField&,
+                                     int);
+template bool is_beside_full_jump<3>(const TiledGrid<3>&, const SolidCells<3>&, const CellField&,
+                                     int);
 template class FractionPlanes<2>;
 template class FractionPlanes<3>;
 

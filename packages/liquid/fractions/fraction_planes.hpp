@@ -11,6 +11,11 @@ inline bool is_mixed(double fraction) {
   return fraction > negligible_fraction && fraction < 1 - negligible_fraction;
 }
 
+/// True for a full cell beside an empty one, or the reverse, without a plane in either. Local.
+template <int dim>
+bool is_beside_full_jump(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                         const CellField& fraction, int cell);
+
 /// The liquid's surface in mixed cells: a plane in each, with the normal of Aulisa et al. (2007),
 /// which is the better of columns' differences and Youngs' gradient. A neighbour that a surface
 /// hides counts as the nearest one in sight, so that the liquid meets solids and sides at 90
@@ -43,7 +48,6 @@ class FractionPlanes {
   /// Distance from the point at `offset` cells from the lower corner of a mixed cell to its
   /// liquid's surface [cells].
   double distance_to(int cell, const Point<dim>& offset) const;
-  double distance_in(const SolidCells<dim>& solids, const CellField& fraction, int cell) const;
 
   const MacDomain<dim>& domain_;
   std::array<CellField, dim + 1> numbers_;  ///< normals, and constants

@@ -7,7 +7,6 @@
 #include "bath.hpp"
 #include "geometry/generators.hpp"
 #include "liquid/fractions/cell_plane.hpp"
-#include "liquid/fractions/fraction_planes.hpp"
 #include "liquid/fractions/volume_of_fluid.hpp"
 
 namespace lockstep::test {
@@ -71,45 +70,6 @@ void expect_plane_is_found() {
 TEST(VolumeOfFluid, ShowsTheDistanceToAPlane) {
   expect_plane_is_found<2>();
   expect_plane_is_found<3>();
-}
-
-/// Water whose surface lies at 0.6 of a layer of cells, above it a wisp, and below it a bubble as
-/// thin: the distances of their cells' centres to the surface go over from that one's to
-/// their own as they grow to a thousandth of a cell.
-template <int dim>
-void expect_wisps_move_no_surface(double thickness, double above, double below) {
-  Bath<dim> bath(open_cube<dim>(16));
-  const TiledGrid<dim>& grid = bath.domain.grid;
-  const std::vector<char> tiles(grid.n_tiles(), 1);
-  CellField fraction(grid.n_stored_cells(), 0), phi(grid.n_stored_cells(), 0);
-  const auto layer = [&](int c) { return static_cast<int>(16 * grid.center(c)[dim - 1]); };
-  grid.for_each_owned_cell([&](int c) {
-    const std::array<double, 3> at_surface{1 - thickness, 0.6, thickness};
-    const int k = layer(c) - 8;
-    fraction[c] = k < 0 ? 1 : k > 2 ? 0 : at_surface[k];
-  });
-  bath.domain.halo.fill(fraction);
-  const SolidCells<dim> no_solids = find_solid_cells<dim>(bath.domain, nullptr);
-  FractionPlanes<dim> planes(bath.domain);
-  planes.find(no_solids, tiles, fraction);
-  planes.set_distance(no_solids, tiles, fraction, 3. / 16, phi);
-  grid.for_each_owned_cell([&](int c) {
-    if (layer(c) == 8) {
-      EXPECT_NEAR(16 * phi[c], below, 1e-6);
-    } else if (layer(c) == 10) {
-      EXPECT_NEAR(16 * phi[c], above, 1e-6);
-    }
-  });
-}
-
-TEST(FractionPlanes, WispsMoveNoSurface) {
-  for (const auto& [thickness, above, below] : {std::array<double, 3>{1e-12, 0.9, -1.1},
-                                                {1e-9, 0.9, -1.1},
-                                                {5e-4, 0.69975, -0.79975},
-                                                {0.01, 0.49, -0.49}}) {
-    expect_wisps_move_no_surface<2>(thickness, above, below);
-    expect_wisps_move_no_surface<3>(thickness, above, below);
-  }
 }
 
 /// A box sinks from beside the surface to where there is liquid alone, over several tiles: what it
