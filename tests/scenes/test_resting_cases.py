@@ -21,7 +21,7 @@ class RestingCases(unittest.TestCase):
                     self.assertEqual(one["outside"], 0)
 
     def test_a_raft_rests_in_volume_of_fluid(self):
-        """What the correction of the volume left above the surface became one of its own, and the raft set off at 5 mm/s in the fifth step."""
+        """A trace that the correction of the volume left above the surface became one of its own: the raft set off at 5 mm/s in the fifth step."""
         self.assertLess(run(raft, .25, 2, .01, coupling="mixed face", interface="volume of fluid")["speed"], 1e-6)
 
     def test_a_block_slides_beyond_the_limit_of_friction(self):

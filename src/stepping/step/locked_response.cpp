@@ -49,16 +49,4 @@ RCP<const LinearOperator> locked_response(const RCP<const LinearOperator>& respo
                          });
 }
 
-std::vector<double> shares_along(const std::vector<RCP<const Vector>>& directions,
-                                 const Vector& x) {
-  const auto n = static_cast<Eigen::Index>(directions.size());
-  if (n == 0)
-    return {};
-  Eigen::MatrixXd products(n, n);
-  for (Eigen::Index j = 0; j < n; ++j)
-    products.col(j) = dots(directions, *directions[j]);
-  const Eigen::VectorXd shares = least_squares(products, dots(directions, x));
-  return {shares.begin(), shares.end()};
-}
-
 }  // namespace lockstep

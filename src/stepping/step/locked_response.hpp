@@ -14,8 +14,4 @@ RCP<const LinearOperator> locked_response(const RCP<const LinearOperator>& respo
                                           const std::vector<RCP<const Vector>>& directions,
                                           double yield = 0);
 
-/// Factors of impulses D whose sum is nearest to x in the sense of least squares; the shortest ones
-/// if the impulses depend on each other. Collective.
-std::vector<double> shares_along(const std::vector<RCP<const Vector>>& directions, const Vector& x);
-
 }  // namespace lockstep

@@ -210,23 +210,6 @@ LockedMotions locked_motions(const Components<dim>& components, const CoupledSys
       on_all_dofs(context.constraints, solids.map(), exact_inverse(block, "solids in contact"))};
 }
 
-/// To M dV - J^T l, of a response dV to contacts, adds B^T p of the pressures in closed fluid that
-/// the response has taken into account. Collective.
-template <int dim>
-void add_locked_push(const Components<dim>& components, const CoupledSystem<dim>& system,
-                     const Reduction& constraints, Vector& reactions) {
-  if (!system.locks_solids())
-    return;
-  Vector rest(reactions, Teuchos::Copy);
-  constraints.restrict(rest);
-  std::vector<double> levels = shares_along(system.locked_directions(), rest);
-  for (double& level : levels)
-    level = -level;
-  const auto pressure = make_vector(components.fluid->pressure_map());
-  add_vectors(system.pressure_null_space(), levels, *pressure);
-  components.coupling->coupling_transposed()->apply(*pressure, reactions, Teuchos::NO_TRANS, 1, 1);
-}
-
 /// The impulses of rows by the contact model, with the opposite sign.
 std::vector<double> opposite_impulses(const std::vector<HeldRow>& rows) {
   std::vector<double> impulses;
@@ -553,7 +536,6 @@ RCP<Vector> CoupledSolve<dim>::reactions_to_contacts(const StepContext<dim>& con
   const auto reactions = rcp(new Vector(*motion.contact.impulse, Teuchos::Copy));
   apply(*solids.full_block(mass_of_fluid_near(components_), context.dt),
         *difference(*motion.solution.velocity, *motion.free_velocity), *reactions, 1, -1);
-  add_locked_push(components_, system_, context.constraints, *reactions);
   context.constraints.keep_reactions(*reactions);
   return reactions;
 }

@@ -56,23 +56,5 @@ TEST(LockedResponse, PistonsOfOneTankKeepItsVolume) {
   }
 }
 
-/// x = 3 a + 2 b + c, c at right angles to a and b. With 2 b beside b the shortest factors have
-/// 2 = f + 2 g with g = 2 f.
-TEST(LockedResponse, SharesOfAPushAreThoseOfTheRegions) {
-  const auto map = make_map(4, Tpetra::getDefaultComm());
-  const auto unit = [&](GlobalIndex one, double value) {
-    return RCP<const Vector>(vector_of(map, [=](GlobalIndex id) { return id == one ? value : 0; }));
-  };
-  const auto push = vector_of(map, [](GlobalIndex id) {
-    const std::array<double, 3> values{3, 2, 1};
-    return id < 3 ? values[id] : 0;
-  });
-  EXPECT_TRUE(shares_along({}, *push).empty());
-  const std::vector<double> shares = shares_along({unit(0, 1), unit(1, 1), unit(1, 2)}, *push);
-  EXPECT_NEAR(shares[0], 3, 1e-14);
-  EXPECT_NEAR(shares[1], 0.4, 1e-14);
-  EXPECT_NEAR(shares[2], 0.8, 1e-14);
-}
-
 }  // namespace
 }  // namespace lockstep::test
