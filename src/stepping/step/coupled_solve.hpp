@@ -91,8 +91,7 @@ class CoupledSolve {
                   const BlockVector* nearby, const LockedMotions& locked,
                   MotionWithContacts<dim>& motion);
   ContactReport<dim> compare(const StepContext<dim>& context, const ContactResponse& response,
-                             const LockedMotions& locked, MotionWithContacts<dim>& motion,
-                             double& scale);
+                             MotionWithContacts<dim>& motion, double& scale);
   void release(const StepContext<dim>& context, MotionWithContacts<dim>& motion);
   ContactReport<dim> decide(const StepContext<dim>& context, const ContactResponse& response,
                             Vector& velocity);

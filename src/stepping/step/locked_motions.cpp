@@ -42,14 +42,12 @@ double own_part(const std::vector<std::pair<GlobalIndex, double>>& weights, cons
 }  // namespace
 
 LockedMotions::LockedMotions(NullSpace pressures, const std::vector<RCP<const Vector>>& directions,
-                             std::vector<double> given, RCP<const LinearOperator> inverse)
-    : solid_inverse_(std::move(inverse)),
-      pressures_(std::move(pressures)),
-      given_(std::move(given)) {
+                             std::vector<double> given, const RCP<const LinearOperator>& inverse)
+    : pressures_(std::move(pressures)), given_(std::move(given)) {
   for (const RCP<const Vector>& direction : directions) {
     directions_.push_back(gathered(*direction));
     const RCP<Vector> answer = make_vector(direction->getMap());
-    apply(*solid_inverse_, *direction, *answer);
+    apply(*inverse, *direction, *answer);
     answers_.push_back(answer);
   }
   if (empty())
@@ -75,28 +73,6 @@ Eigen::MatrixXd LockedMotions::along(const std::vector<HeldRow>& rows) const {
   sum_all(answers_.front()->getMap()->getComm(), products.data(),
           static_cast<int>(products.size()));
   return products;
-}
-
-void LockedMotions::let_go(std::vector<HeldRow>& rows) const {
-  constexpr double least_free = 0.01;  // a part of J C^-1 J^T; chosen, not varied by a page
-  if (empty() || rows.empty())
-    return;
-  Vector impulse(answers_.front()->getMap()), velocity(impulse.getMap());
-  std::vector<double> whole(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    impulse.putScalar(0);
-    for (const auto& [dof, weight] : rows[i].weights)
-      if (impulse.getMap()->isNodeGlobalElement(dof))
-        impulse.sumIntoGlobalValue(dof, weight);
-    apply(*solid_inverse_, impulse, velocity);
-    whole[i] = own_part(rows[i].weights, velocity);
-  }
-  sum_over_ranks(impulse.getMap()->getComm(), whole);
-  const Eigen::MatrixXd products = along(rows);
-  const Eigen::VectorXd locked = (products * inverse_).cwiseProduct(products).rowwise().sum();
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (whole[i] - locked[static_cast<Eigen::Index>(i)] < least_free * whole[i])
-      rows[i].stiffness = 0;
 }
 
 Eigen::MatrixXd LockedMotions::take_out(std::vector<HeldRow>& rows) const {

@@ -26,12 +26,9 @@ class LockedMotions {
   /// `pressures`: n; `directions`: d [m^(dim-1)]; `given`: d.V [m^dim/s]; `inverse`: C^-1 of the
   /// unknowns. Collective.
   LockedMotions(NullSpace pressures, const std::vector<RCP<const Vector>>& directions,
-                std::vector<double> given, RCP<const LinearOperator> inverse);
+                std::vector<double> given, const RCP<const LinearOperator>& inverse);
 
   bool empty() const { return directions_.empty(); }
-  /// Takes the stiffness of rows that fluid bears all but alone: how both share them is no more
-  /// than round-off, so that a solve takes the impulses that contact has decided. Collective.
-  void let_go(std::vector<HeldRow>& rows) const;
   /// Replaces rows by J' and its velocities, and returns `levels`, one row a held row, one column a
   /// direction [1/m^(dim-1)]. Collective.
   Eigen::MatrixXd take_out(std::vector<HeldRow>& rows) const;
@@ -44,7 +41,6 @@ class LockedMotions {
 
   Eigen::MatrixXd along(const std::vector<HeldRow>& rows) const;
 
-  RCP<const LinearOperator> solid_inverse_;  ///< C^-1
   NullSpace pressures_;
   std::vector<Weights> directions_;         ///< by dof, the same on all ranks
   std::vector<RCP<const Vector>> answers_;  ///< C^-1 d

@@ -238,16 +238,6 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
-/// The largest velocity of rows that a solve holds [m/s]. Collective.
-double largest_held(const std::vector<HeldRow>& rows, const Vector& velocity,
-                    const Communicator& comm) {
-  const std::vector<double> values = values_of(rows, velocity, comm);
-  double most = 0;
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    most = std::max(most, rows[k].stiffness > 0 ? std::abs(values[k]) : 0);
-  return most;
-}
-
 /// The velocity that gravity gives in a step, or that rows have before it if that is larger [m/s].
 /// Collective.
 template <int dim>
@@ -436,7 +426,6 @@ void CoupledSolve<dim>::solve_held(const StepContext<dim>& context, const Vector
 template <int dim>
 ContactReport<dim> CoupledSolve<dim>::compare(const StepContext<dim>& context,
                                               const ContactResponse& response,
-                                              const LockedMotions& locked,
                                               MotionWithContacts<dim>& motion, double& scale) {
   const auto free = rcp(new Vector(*motion.solution.velocity, Teuchos::Copy));
   if (!motion.contact.held.empty()) {
@@ -448,12 +437,11 @@ ContactReport<dim> CoupledSolve<dim>::compare(const StepContext<dim>& context,
   motion.free_velocity = free;
   Vector decided(*free, Teuchos::Copy);
   ContactReport<dim> next = decide(context, response, decided);
-  locked.let_go(next.held);
   const RCP<const Vector> stopped = difference(decided, *free);
   decided.update(-1, *motion.solution.velocity, 1);
   const auto& comm = components_.solids->comm();
-  motion.contact.residual = std::max(largest_held(motion.contact.held, decided, comm),
-                                     largest_held(next.held, decided, comm));
+  motion.contact.residual = std::max(largest(values_of(motion.contact.held, decided, comm)),
+                                     largest(values_of(next.held, decided, comm)));
   scale = std::max(context.dt * components_.fluid->gravity().norm(),
                    largest(values_of(next.held, *stopped, comm)));
   return next;
@@ -489,10 +477,8 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
   int n_solves = 0, last_gain = 1;
   while (!is_locked ||
          largest_change(held.contact.held) <= most_change<dim>(components_) * ordinary) {
-    if (locked.empty() && is_locked && !held.contact.held.empty()) {
+    if (locked.empty() && is_locked && !held.contact.held.empty())
       locked = locked_motions(components_, system_, context);
-      locked.let_go(held.contact.held);
-    }
     try {
       solve_held(context, *momentum, n_solves > 0 ? &best.solution.unknowns : nearby, locked, held);
     } catch (const SolveError&) {
@@ -508,7 +494,7 @@ MotionWithContacts<dim> CoupledSolve<dim>::solve_with_contacts(const StepContext
     last_impulse = held.contact.impulse;
     last_velocity = held.solution.unknowns.solid;
     double scale = 0;
-    ContactReport<dim> next = compare(context, response, locked, held, scale);
+    ContactReport<dim> next = compare(context, response, held, scale);
     if (n_solves == 1 || held.contact.residual < 0.5 * best.contact.residual)
       last_gain = n_solves;
     if (n_solves == 1 || held.contact.residual < best.contact.residual)
