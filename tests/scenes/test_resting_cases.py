@@ -9,7 +9,7 @@ from resting_cases import RESTING, raft, run, sliding  # noqa: E402
 
 class RestingCases(unittest.TestCase):
     def test_rest(self):
-        """Unequal stacks took twelve solves a phase while contact swept plainly."""
+        """Unequal stacks took six solves a phase while contact swept plainly."""
         for name, (case, ratios) in RESTING.items():
             for coupling in (None, "mixed face"):
                 with self.subTest(name, coupling=coupling):
