@@ -283,9 +283,9 @@ void ImpulseSolver<dim>::push(const Row& row, const Point<dim>& impulse) {
   }
 }
 
-/// Solves for one contact while the others stay. Returns by how much its velocity changes [m/s].
+/// Solves for one contact while the others stay.
 template <int dim>
-double ImpulseSolver<dim>::relax(Row& row) {
+void ImpulseSolver<dim>::relax(Row& row, SweepReport& report) {
   const auto& mobility = row.law.mobility;
   Point<dim> velocity = row.frame.transpose() * relative_velocity(row);
   velocity[0] -= row.target;
@@ -294,23 +294,33 @@ double ImpulseSolver<dim>::relax(Row& row) {
     next = coulomb_impulse<dim>(row.law, velocity - mobility * row.impulse, row.impulse);
   else
     next[0] = std::max(0.0, row.impulse[0] - velocity[0] / row.normal_response);
-  const Point<dim> change = next - row.impulse;
+  row.change = next - row.impulse;
   row.impulse = next;
-  if (change.isZero(0))
-    return 0;
-  push(row, row.frame * change);
-  const Point<dim> felt = mobility * change;
-  return row.law.friction > 0 ? felt.norm() : std::abs(felt[0]);
+  if (row.change.isZero(0))
+    return;
+  push(row, row.frame * row.change);
+  const Point<dim> felt = mobility * row.change;
+  const double change = row.law.friction > 0 ? felt.norm() : std::abs(felt[0]);
+  report.change = std::max(report.change, change);
+  report.energy += row.change.dot(felt);
 }
 
-/// Adds to the impulses `factor` times `direction_`, to which the last sweep's change then is
-/// added: the next direction of nonlinear conjugate gradients.
+template <int dim>
+typename ImpulseSolver<dim>::SweepReport ImpulseSolver<dim>::sweep(double negligible) {
+  SweepReport report;
+  report.change = limits_.relax(velocity_by_id(), negligible);
+  for (Row& row : rows_)
+    relax(row, report);
+  return report;
+}
+
+/// Adds to the impulses `factor` times the last direction, which then becomes that and the last
+/// sweep's change: the next direction of nonlinear conjugate gradients.
 template <int dim>
 void ImpulseSolver<dim>::go_on(double factor) {
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    Row& row = rows_[k];
-    const Point<dim> change = row.impulse - swept_from_[k], more = factor * direction_[k];
-    direction_[k] = change + more;
+  for (Row& row : rows_) {
+    const Point<dim> more = factor * row.direction;
+    row.direction = row.change + more;
     if (!more.isZero(0)) {
       row.impulse += more;
       push(row, row.frame * more);
@@ -318,46 +328,25 @@ void ImpulseSolver<dim>::go_on(double factor) {
   }
 }
 
-/// The energy of the last sweep's changes, of each contact by itself [J].
-template <int dim>
-double ImpulseSolver<dim>::energy_of_sweep() const {
-  double energy = 0;
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const Point<dim> change = rows_[k].impulse - swept_from_[k];
-    energy += change.dot(rows_[k].law.mobility * change);
-  }
-  return energy;
-}
-
 /// Each sweep is a step of a gradient for nonlinear conjugate gradients (Silcowitz-Hansen, Niebe
 /// and Erleben 2010), which need a fiftieth of the sweeps in stacks of unequal masses.
 template <int dim>
 int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance, double negligible) {
   extend_limits();
-  direction_.assign(rows_.size(), Point<dim>::Zero());
+  for (Row& row : rows_)
+    row.direction.setZero();
   ConjugateSteps steps;
   int n_sweeps = 0;
   for (double change = 1e300; n_sweeps < maximum_sweeps && !(change <= tolerance);) {
-    change = sweep(negligible);
-    const std::optional<double> factor = steps.next(energy_of_sweep());
+    const SweepReport report = sweep(negligible);
+    change = report.change;
+    const std::optional<double> factor = steps.next(report.energy);
     if (++n_sweeps < maximum_sweeps && change > tolerance && factor)
       go_on(*factor);
   }
   if (responds() && n_contacts() > 0)
     find_velocity();
   return n_sweeps;
-}
-
-/// Returns the largest change of a velocity at a contact or limit [m/s].
-template <int dim>
-double ImpulseSolver<dim>::sweep(double negligible) {
-  swept_from_.clear();
-  for (const Row& row : rows_)
-    swept_from_.push_back(row.impulse);
-  double change = limits_.relax(velocity_by_id(), negligible);
-  for (Row& row : rows_)
-    change = std::max(change, relax(row));
-  return change;
 }
 
 template <int dim>

@@ -66,6 +66,10 @@ class ImpulseSolver {
     Point<dim> coefficient;
   };
   using Compliance = Eigen::Matrix<double, dim, dim>;
+  struct SweepReport {
+    double change = 0;  ///< the largest one of a velocity at a contact or limit [m/s]
+    double energy = 0;  ///< sum over contacts of the energy of its change alone [J]
+  };
   struct Row {
     Contact<dim> contact;
     int begin = 0, end = 0;                      ///< in `jacobian_`
@@ -75,9 +79,11 @@ class ImpulseSolver {
     double target = 0;
     double normal_response = 0, tangent_response = 0;  ///< velocity per impulse [1/kg]
     bool solid_prescribed = false, other_prescribed = false;
-    Compliance frame = Compliance::Zero();    ///< columns: the normal, then the tangents
-    CoulombContact<dim> law;                  ///< in the frame
-    Point<dim> impulse = Point<dim>::Zero();  ///< in the frame [kg m/s]
+    Compliance frame = Compliance::Zero();      ///< columns: the normal, then the tangents
+    CoulombContact<dim> law;                    ///< in the frame
+    Point<dim> impulse = Point<dim>::Zero();    ///< in the frame [kg m/s]
+    Point<dim> change = Point<dim>::Zero();     ///< by the last sweep, in the frame
+    Point<dim> direction = Point<dim>::Zero();  ///< last one of conjugate gradients, in the frame
     bool pushes() const { return impulse[0] > 0; }
     /// The impulse of friction.
     Point<dim> of_friction() const {
@@ -106,10 +112,9 @@ class ImpulseSolver {
   void find_response(const Row& row, Compliance& compliance, double& of_parts) const;
   Point<dim> relative_velocity(const Row& row) const;
   void push(const Row& row, const Point<dim>& impulse);
-  double relax(Row& row);
-  double sweep(double negligible);
+  void relax(Row& row, SweepReport& report);
+  SweepReport sweep(double negligible);
   void go_on(double factor);
-  double energy_of_sweep() const;
   bool slides(const Row& row) const;
   /// Calls f(row, direction, target, impulse, response) for what a coupled solve is to hold.
   template <typename Function>
@@ -127,7 +132,6 @@ class ImpulseSolver {
   std::vector<double> velocity_, active_, given_;
   VelocityRow<dim> velocity_row_;  ///< for use by add_entries alone
   std::vector<Row> rows_;
-  std::vector<Point<dim>> swept_from_, direction_;  ///< impulses of rows, in their frames
   std::vector<Entry> jacobian_, response_;
   LimitImpulses limits_;
 };

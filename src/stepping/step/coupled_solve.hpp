@@ -41,8 +41,8 @@ class CoupledSolve {
   /// linearisation. Collective.
   CoupledSolution converge(const StepContext<dim>& context, const RCP<Vector>& momentum,
                            const BlockVector* nearby = nullptr);
-  /// True if contacts, and limits of joints, are part of the coupled solve, wherever that settles.
-  /// The same on all ranks.
+  /// True if contacts, and limits of joints, are part of the coupled solve, wherever that settles;
+  /// ranks agree.
   bool holds_contacts() const;
   /// Returns the contacts of the velocities that solids with `momentum` have if the fluid gives
   /// them what it gives at rest, or gave soft ones in the last step, in the response of
