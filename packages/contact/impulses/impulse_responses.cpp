@@ -63,13 +63,6 @@ void ImpulseSolver<dim>::find_velocity() {
     velocity_[dof_of(static_cast<int>(id))] = active_[id];
 }
 
-/// True at the edge of Coulomb's cone, and without friction.
-template <int dim>
-bool ImpulseSolver<dim>::slides(const Row& row) const {
-  constexpr double edge = 1 - 1e-9;
-  return row.impulse.template tail<dim - 1>().norm() >= edge * row.law.friction * row.impulse[0];
-}
-
 template <int dim>
 void ImpulseSolver<dim>::take_out_given(HeldRow& row) const {
   Terms left;
@@ -92,7 +85,7 @@ void ImpulseSolver<dim>::for_each_held(const Function& f) const {
     if (!row.pushes())
       continue;
     f(row, row.contact.normal, row.target, row.impulse[0], row.normal_response);
-    for (int k = 1; k < dim && !slides(row); ++k)
+    for (int k = 1; k < dim && !row.slides(); ++k)
       f(row, row.frame.col(k), 0, row.impulse[k], row.tangent_response);
   }
 }
@@ -120,8 +113,8 @@ void ImpulseSolver<dim>::add_pushes(const Row& row, const Point<dim>& impulse, i
     push.impulse.add(side.x, sign * impulse);
     pushes.push_back(push);
   };
-  add(solid_of(row), 1);
-  add(other_of(row), -1);
+  add(row.solid_side(), 1);
+  add(row.other_side(), -1);
 }
 
 template <int dim>
@@ -132,7 +125,7 @@ std::vector<PrescribedPush<dim>> ImpulseSolver<dim>::held_pushes() const {
     add_pushes(row, direction, number++, pushes);
   });
   for (const Row& row : rows_) {
-    if (row.pushes() && slides(row))
+    if (row.pushes() && row.slides())
       add_pushes(row, row.of_friction(), PrescribedPush<dim>::whole, pushes);
   }
   return pushes;
@@ -150,7 +143,7 @@ template <int dim>
 typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::sliding_impulse(Terms& on_given) const {
   HeldRow all;
   for (const Row& row : rows_) {
-    if (!row.pushes() || !slides(row))
+    if (!row.pushes() || !row.slides())
       continue;
     for (const auto& term : impulse_on_both(row, row.of_friction()))
       all.weights.push_back(term);

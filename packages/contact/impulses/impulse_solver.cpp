@@ -191,9 +191,9 @@ typename ImpulseSolver<dim>::Row ImpulseSolver<dim>::row_of(const Contact<dim>& 
   row.solid_prescribed = solids[contact.solid].prescribed;
   row.other_prescribed = contact.other < 0 || solids[contact.other].prescribed;
   row.begin = static_cast<int>(jacobian_.size());
-  add_side(row, solid_of(row), 1);
+  add_side(row, row.solid_side(), 1);
   if (contact.other >= 0)
-    add_side(row, other_of(row), -1);
+    add_side(row, row.other_side(), -1);
   else
     row.of_given -= contact.wall_velocity;
   row.prescribed += row.of_given;
@@ -349,23 +349,13 @@ int ImpulseSolver<dim>::iterate(int maximum_sweeps, double tolerance, double neg
   return n_sweeps;
 }
 
-template <int dim>
-ContactSide<dim> ImpulseSolver<dim>::solid_of(const Row& row) const {
-  return {row.contact.solid, row.contact.point, row.contact.place()};
-}
-
-template <int dim>
-ContactSide<dim> ImpulseSolver<dim>::other_of(const Row& row) const {
-  return {row.contact.other, row.contact.other_point, row.contact.other_place()};
-}
-
 /// Generalized, by dof of the surfaces.
 template <int dim>
 typename ImpulseSolver<dim>::Terms ImpulseSolver<dim>::impulse_on_both(
     const Row& row, const Point<dim>& impulse) const {
-  Terms on_dofs = impulse_on(system_, shapes_, solid_of(row), impulse);
+  Terms on_dofs = impulse_on(system_, shapes_, row.solid_side(), impulse);
   if (row.contact.other >= 0) {
-    const Terms on_other = impulse_on<dim>(system_, shapes_, other_of(row), -impulse);
+    const Terms on_other = impulse_on<dim>(system_, shapes_, row.other_side(), -impulse);
     on_dofs.insert(on_dofs.end(), on_other.begin(), on_other.end());
   }
   return on_dofs;

@@ -1,11 +1,9 @@
 #pragma once
 #include <vector>
 
-#include "contact/bodies/contact_side.hpp"
-#include "contact/impulses/coulomb.hpp"
+#include "contact/impulses/contact_row.hpp"
 #include "contact/impulses/limit_impulses.hpp"
 #include "contact/impulses/mobility.hpp"
-#include "contact/search/contact_search.hpp"
 #include "interfaces/contact.hpp"
 
 namespace lockstep {
@@ -65,30 +63,11 @@ class ImpulseSolver {
     int id;
     Point<dim> coefficient;
   };
-  using Compliance = Eigen::Matrix<double, dim, dim>;
+  using Row = ContactRow<dim>;
+  using Compliance = typename Row::Compliance;
   struct SweepReport {
     double change = 0;  ///< the largest one of a velocity at a contact or limit [m/s]
     double energy = 0;  ///< sum over contacts of the energy of its change alone [J]
-  };
-  struct Row {
-    Contact<dim> contact;
-    int begin = 0, end = 0;                      ///< in `jacobian_`
-    int response_begin = 0, response_end = 0;    ///< in `response_`: M_S^-1 J^T, without a response
-    Point<dim> prescribed = Point<dim>::Zero();  ///< velocity that no impulse changes
-    Point<dim> of_given = Point<dim>::Zero();    ///< its part of prescribed solids and walls
-    double target = 0;
-    double normal_response = 0, tangent_response = 0;  ///< velocity per impulse [1/kg]
-    bool solid_prescribed = false, other_prescribed = false;
-    Compliance frame = Compliance::Zero();      ///< columns: the normal, then the tangents
-    CoulombContact<dim> law;                    ///< in the frame
-    Point<dim> impulse = Point<dim>::Zero();    ///< in the frame [kg m/s]
-    Point<dim> change = Point<dim>::Zero();     ///< by the last sweep, in the frame
-    Point<dim> direction = Point<dim>::Zero();  ///< last one of conjugate gradients, in the frame
-    bool pushes() const { return impulse[0] > 0; }
-    /// The impulse of friction.
-    Point<dim> of_friction() const {
-      return frame.template rightCols<dim - 1>() * impulse.template tail<dim - 1>();
-    }
   };
 
   /// With a response ids are numbers of active dofs, and `active_` their velocities; else they are
@@ -115,15 +94,12 @@ class ImpulseSolver {
   void relax(Row& row, SweepReport& report);
   SweepReport sweep(double negligible);
   void go_on(double factor);
-  bool slides(const Row& row) const;
   /// Calls f(row, direction, target, impulse, response) for what a coupled solve is to hold.
   template <typename Function>
   void for_each_held(const Function& f) const;
   /// Adds what an impulse on a contact gives to its prescribed solids.
   void add_pushes(const Row& row, const Point<dim>& impulse, int number,
                   std::vector<PrescribedPush<dim>>& pushes) const;
-  ContactSide<dim> solid_of(const Row& row) const;
-  ContactSide<dim> other_of(const Row& row) const;
   Terms impulse_on_both(const Row& row, const Point<dim>& impulse) const;
 
   const SolidSystem<dim>& system_;
