@@ -166,6 +166,8 @@ def cloth(world, center, reach, geometry=None):
     if rng.random() < 0.3:
         body["Membrane"] = {"Type": "mass-spring"}
         rng.uniform(0, 1)  # drawn once for a parameter that is no more: seeds keep their scenes
+    else:
+        world.facts.crushed |= "Most Sub-Steps" in body  # the membrane is of St. Venant-Kirchhoff's law
     if rng.random() < 0.25:
         body["Pre-Strain"] = rng.uniform(-0.05, 0.1)
     if rng.random() < 0.2:

@@ -36,6 +36,18 @@ bool touches(const MacDomain<dim>& domain, const SolidCells<dim>& solids, const 
   return false;
 }
 
+/// True for a cell more than half full beside one that is not, or the reverse.
+template <int dim>
+bool is_beside_other(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                     const CellField& liquid, int cell) {
+  for (int i = 0; i < 2 * dim; ++i) {
+    const int other = solids.seen_neighbor(grid, cell, i / 2, i % 2);
+    if (other >= 0 && (liquid[cell] > 0.5) != (liquid[other] > 0.5))
+      return true;
+  }
+  return false;
+}
+
 /// Liquid components and their volume defects [cells].
 template <int dim>
 class Books {
@@ -81,16 +93,20 @@ class Books {
 
  private:
   /// Capacity of a cell: the liquid it takes (or gives) per cell that the surface moves, roughly
-  /// the area of the surface in it [1]. An empty cell above one with a surface takes none, and a
-  /// full one below it gives none: a trace in it would be a second surface.
+  /// the area of the surface in it [1]. A nearly empty cell beside a fuller one, and the reverse,
+  /// has the surface at its side. An empty cell above one with a surface takes none, and a full
+  /// one below it gives none: a trace in it would be a second surface.
   double redistribution_weight(int cell, bool takes) const {
+    constexpr double at_side = 0.25;  // what a surface at a side has in either of its two cells
     const double liquid = fractions_.liquid[cell];
-    if (is_mixed(liquid))
-      return 4 * liquid * (1 - liquid);
+    if (is_mixed(liquid)) {
+      const bool crosses = is_beside_other(domain_.grid, solids_, fractions_.liquid, cell);
+      return std::max(4 * liquid * (1 - liquid), crosses ? at_side : 0);
+    }
     const bool can = takes ? liquid < 0.5 : liquid > 0.5;
     const bool near = std::abs(phi_[cell]) < reach_of_labels * domain_.spacing();
     const bool jumps = is_beside_full_jump(domain_.grid, solids_, fractions_.liquid, cell);
-    return can && near && jumps ? 0.25 : 0;
+    return can && near && jumps ? at_side : 0;
   }
   void add_up() {
     for (auto* sums : {&defect_, &rooms_[0], &rooms_[1], &share_})
