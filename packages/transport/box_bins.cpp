@@ -27,6 +27,7 @@ bool BoxBins<dim>::lay_out(const Box<dim>& region, const Point<dim>& origin, dou
   int n_rows = 1;
   for (int a = 0; a < dim; ++a) {
     const double first = std::floor((region.min()[a] - origin[a]) * per_width_);
+    first_[a] = static_cast<int>(first);
     lower_[a] = origin[a] + first * width;
     count_[a] = static_cast<int>(std::floor((region.max()[a] - lower_[a]) * per_width_)) + 1;
     n_rows *= a > 0 ? count_[a] : 1;
@@ -94,6 +95,22 @@ typename BoxBins<dim>::List BoxBins<dim>::at(const Point<dim>& x) const {
       return {};
     bin[a] = static_cast<int>(place);
   }
+  return content(bin);
+}
+
+template <int dim>
+typename BoxBins<dim>::List BoxBins<dim>::in(const Index<dim>& bin) const {
+  Index<dim> place;
+  for (int a = 0; a < dim; ++a) {
+    place[a] = bin[a] - first_[a];
+    if (place[a] < 0 || place[a] >= count_[a])
+      return {};
+  }
+  return content(place);
+}
+
+template <int dim>
+typename BoxBins<dim>::List BoxBins<dim>::content(const Index<dim>& bin) const {
   const int word = row_of(bin) + (bin[0] >> 6), bit = bin[0] & 63;
   return (used_[word] >> bit & 1) != 0 ? list(slot(word, bit)) : List{};
 }

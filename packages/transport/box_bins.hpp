@@ -39,6 +39,8 @@ class BoxBins {
   void visit(const Box<dim>& box, const Function& f) const;
   /// Returns the content of the bin at a place: indices, ascending.
   List at(const Point<dim>& x) const;
+  /// Returns the content of a bin, counted from the one whose lower corner is the origin.
+  List in(const Index<dim>& bin) const;
   /// Calls f(list, fraction of the segment where it enters the bin) for the bins on the
   /// way from a to b in their order, until f returns true. Bins that only a
   /// round-off separates from the segment may be left out.
@@ -52,6 +54,8 @@ class BoxBins {
   /// Bins that a box touches; without any if it misses the region.
   Range range(const Box<dim>& box) const;
   bool any_set(const std::vector<std::uint64_t>& bits, const Range& asked) const;
+  /// Content of a bin within the region, counted from its lowest one.
+  List content(const Index<dim>& bin) const;
   /// Sets the bins; false if there are none.
   bool lay_out(const Box<dim>& region, const Point<dim>& origin, double width);
   struct Entry {
@@ -79,6 +83,7 @@ class BoxBins {
 
   Point<dim> lower_ = Point<dim>::Zero();
   double per_width_ = 0;  ///< bins a metre
+  Index<dim> first_{};    ///< the lowest bin, counted from the origin
   Index<dim> count_{};    ///< bins along each axis; 0: there are no boxes
   int words_in_row_ = 0;
   /// A bit for each bin along axis 0, rows start a word: bins that are not empty, and that a box

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/simplex_queries.hpp"
+#include "transport/box_visibility.hpp"
 #include "transport/strip_values.hpp"
 
 namespace lockstep {
@@ -19,6 +20,7 @@ template <int dim>
 NearbySurface<dim>::NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid, int reach)
     : snapshot_(snapshot && !snapshot->empty() ? std::move(snapshot) : nullptr),
       lower_(grid.lower()),
+      n_cells_(grid.n_cells()),
       spacing_(grid.spacing()),
       tolerance_(1e-6 * grid.spacing()) {
   for (int a = 0; a < dim; ++a)
@@ -36,7 +38,7 @@ NearbySurface<dim>::NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid,
     reached_.min()[a] = lower_[a] + begin[a] * spacing_;
     reached_.max()[a] = lower_[a] + end[a] * spacing_;
   }
-  list_near();
+  list_images();
   make_bins();
   std::vector<Box<dim>> in_cells;
   in_cells.reserve(bounds_.size());
@@ -46,9 +48,12 @@ NearbySurface<dim>::NearbySurface(Snapshot snapshot, const TiledGrid<dim>& grid,
 }
 
 template <int dim>
-void NearbySurface<dim>::list_near() {
+NearbySurface<dim>::~NearbySurface() = default;
+
+template <int dim>
+void NearbySurface<dim>::list_images() {
   bounds_.reserve(snapshot_->n_simplices());
-  near_.reserve(snapshot_->n_simplices());
+  images_.reserve(snapshot_->n_simplices());
   any_image(reached_, [&](const Point<dim>& shift) {
     const Box<dim> place(reached_.min() - shift, reached_.max() - shift);
     for (int s = 0; s < snapshot_->n_simplices(); ++s) {
@@ -56,7 +61,7 @@ void NearbySurface<dim>::list_near() {
       if (!place.intersects(bounds) || lies_beyond(bounds, shift))
         continue;
       bounds_.push_back(widened<dim>(bounds.translated(shift), 2 * tolerance_));
-      near_.push_back(picture(s, shift));
+      images_.push_back(picture(s, shift));
     }
     return false;
   });
@@ -74,34 +79,34 @@ bool NearbySurface<dim>::lies_beyond(const Box<dim>& bounds, const Point<dim>& s
 }
 
 template <int dim>
-std::array<Point<dim>, dim> NearbySurface<dim>::corners(const Near& near) const {
-  auto result = snapshot_->corners(near.simplex);
+std::array<Point<dim>, dim> NearbySurface<dim>::corners(const Image& image) const {
+  auto result = snapshot_->corners(image.simplex);
   for (Point<dim>& corner : result)
-    corner += near.shift;
+    corner += image.shift;
   return result;
 }
 
 template <int dim>
-typename NearbySurface<dim>::Near NearbySurface<dim>::picture(int simplex,
-                                                              const Point<dim>& shift) const {
-  Near near;
-  near.simplex = simplex;
-  near.shift = shift;
-  const auto points = corners(near);
+typename NearbySurface<dim>::Image NearbySurface<dim>::picture(int simplex,
+                                                               const Point<dim>& shift) const {
+  Image image;
+  image.simplex = simplex;
+  image.shift = shift;
+  const auto points = corners(image);
   const auto plane = [](Point<dim> normal, const Point<dim>& x) {
     normal.normalize();
     return Plane{normal, normal.dot(x)};
   };
-  near.plane = plane(area_vector<dim>(points), points[0]);
+  image.plane = plane(area_vector<dim>(points), points[0]);
   for (int k = 0; k < dim; ++k) {
     const Point<dim>&facet = points[(k + 1) % dim], &end = points[(k + dim - 1) % dim];
     const Point<dim> along = end - facet, inward = points[k] - facet;
     const double square = along.squaredNorm();
-    static_cast<Plane&>(near.facets[k]) =
+    static_cast<Plane&>(image.facets[k]) =
         plane(inward - (square > 0 ? along.dot(inward) / square : 0) * along, facet);
-    near.facets[k].height = near.facets[k](points[k]);
+    image.facets[k].height = image.facets[k](points[k]);
   }
-  return near;
+  return image;
 }
 
 /// Bins of half a cell tell stencils that surfaces cut from the others; where many small simplices
@@ -122,10 +127,9 @@ void NearbySurface<dim>::make_bins() {
   small_simplices_ = width < 0.5 * spacing_;
   if (small_simplices_)
     make_patches();
-  seen_.assign(near_.size(), 0);
+  seen_.assign(images_.size(), 0);
   bins_.build(bounds_, region, lower_, width, [&](int i, const Point<dim>& center) {
-    const Plane& plane = near_[i].plane;
-    return std::abs(plane(center)) <= 0.5 * width * plane.normal.cwiseAbs().sum() + 4 * tolerance_;
+    return images_[i].comes_into(center, 0.5 * width, tolerance_);
   });
 }
 
@@ -147,11 +151,11 @@ void NearbySurface<dim>::make_patches() {
   patch_bins_.visit(region, [&](const auto& list) {
     Patch& patch = patches_[list.place];
     for (const int i : list)
-      patch.plane.normal += near_[i].plane.normal;
+      patch.plane.normal += images_[i].plane.normal;
     patch.plane.normal.normalize();
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const int i : list)
-      for (const Point<dim>& corner : corners(near_[i])) {
+      for (const Point<dim>& corner : corners(images_[i])) {
         low = std::min(low, patch.plane(corner));
         high = std::max(high, patch.plane(corner));
       }
@@ -243,8 +247,8 @@ std::optional<SurfacePoint<dim>> NearbySurface<dim>::first_hit(const Point<dim>&
     bins_.walk(a, b, [&](const auto& list, double fraction) {
       if (first.point && (fraction - first.point->fraction) * length > 4 * tolerance_)
         return true;
-      for (const int near : list)
-        look_at(near, a, b, length, first);
+      for (const int image : list)
+        look_at(image, a, b, length, first);
       return false;
     });
     return first.point;
@@ -306,9 +310,9 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
       seen_[i] = question_;
       if (!bounds_[i].intersects(box))
         continue;
-      const Near& near = near_[i];
-      const double from = near.plane(eye);
-      const Values to = at_corners(near.plane);
+      const Image& image = images_[i];
+      const double from = image.plane(eye);
+      const Values to = at_corners(image.plane);
       const double tolerance = 3 * tolerance_;
       if (std::min(from, to.minCoeff()) > tolerance || std::max(from, to.maxCoeff()) < -tolerance)
         continue;
@@ -316,7 +320,7 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
       // plane, and do not pass by the simplex.
       const Values drop = from - to, size = drop.abs();
       Values inside = Values::Constant(std::numeric_limits<double>::infinity());
-      for (const Facet& facet : near.facets)
+      for (const Facet& facet : image.facets)
         inside = inside.min(drop * (from * at_corners(facet) - facet(eye) * to));
       const Values reaches = (tolerance - to.min(from)).min(tolerance + to.max(from));
       const Values passes = (-2 * tolerance_ * length * size - inside)
@@ -336,9 +340,9 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
 template <int dim>
 void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b, double length,
                                  Hit& first) const {
-  const Near& near = near_[i];
-  const double from = near.plane(a), to = near.plane(b);
-  if (i == first.near || std::min(from, to) > 3 * tolerance_ ||
+  const Image& image = images_[i];
+  const double from = image.plane(a), to = image.plane(b);
+  if (i == first.image || std::min(from, to) > 3 * tolerance_ ||
       std::max(from, to) < -3 * tolerance_ ||
       (!small_simplices_ && !bounds_[i].intersects(Box<dim>(a.cwiseMin(b), a.cwiseMax(b)))))
     return;
@@ -348,10 +352,10 @@ void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b
     // differ: bodies that a plane of the grid cuts in two equal halves must not slip by another one
     // because a solve stopped elsewhere.
     const double farther = first.point ? (fraction - first.point->fraction) * length : 0;
-    if (first.point && (farther > tolerance_ || (farther >= -tolerance_ && i > first.near)))
+    if (first.point && (farther > tolerance_ || (farther >= -tolerance_ && i > first.image)))
       return;
-    first.near = i;
-    first.point = SurfacePoint<dim>{near.simplex, barycentric, position - near.shift, fraction};
+    first.image = i;
+    first.point = SurfacePoint<dim>{image.simplex, barycentric, position - image.shift, fraction};
   };
   // Most that cross the plane pass by the simplex, and most others cross it clear of its facets,
   // where its neighbours are.
@@ -361,7 +365,7 @@ void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b
     Barycentric<dim> shares;
     bool is_clear = from * to < 0;
     for (int k = 0; k < dim; ++k) {
-      const Facet& facet = near.facets[k];
+      const Facet& facet = image.facets[k];
       const double inside = std::copysign(1.0, drop) * (from * facet(b) - to * facet(a));
       if (inside < -slack)
         return;
@@ -375,12 +379,40 @@ void NearbySurface<dim>::look_at(int i, const Point<dim>& a, const Point<dim>& b
   }
   // A segment shorter than the tolerance has no direction to speak of.
   if (length <= tolerance_) {
-    const auto closest = closest_on_simplex<dim>(corners(near), a);
+    const auto closest = closest_on_simplex<dim>(corners(image), a);
     if (closest.distance <= 2 * tolerance_)
       take(closest.barycentric, closest.position, 0);
-  } else if (const auto hit = hit_simplex<dim>(corners(near), a, b, tolerance_)) {
+  } else if (const auto hit = hit_simplex<dim>(corners(image), a, b, tolerance_)) {
     take(hit->barycentric, hit->position, hit->fraction);
   }
+}
+
+template <int dim>
+std::vector<typename NearbySurface<dim>::Image> NearbySurface<dim>::images_in(
+    const Box<dim>& box) const {
+  std::vector<Image> found;
+  std::vector<int> simplices;
+  any_image(box, [&](const Point<dim>& shift) {
+    const Box<dim> place(box.min() - shift, box.max() - shift);
+    snapshot_->touching(widened<dim>(place, 2 * tolerance_), simplices);
+    std::sort(simplices.begin(), simplices.end());
+    for (const int s : simplices)
+      if (!lies_beyond(snapshot_->bounds(s), shift)) {
+        const Image image = picture(s, shift);
+        if (image.comes_into(box.center(), 0.5 * box.sizes()[0], tolerance_))
+          found.push_back(image);
+      }
+    return false;
+  });
+  return found;
+}
+
+template <int dim>
+const VisibilityTable<dim>& NearbySurface<dim>::visibility(int kind) const {
+  auto& table = visibility_[kind + 1];
+  if (!table)
+    table = std::make_unique<VisibilityTable<dim>>(*this, kind);
+  return *table;
 }
 
 template <int dim>

@@ -2,7 +2,13 @@
 
 #include <algorithm>
 
+#include "transport/box_visibility.hpp"
+
 namespace lockstep {
+
+namespace {
+constexpr std::optional<unsigned> all_samples = ~0u;
+}  // namespace
 
 void WeightedMean::add(double weight, double value) {
   if (weight_ == 0)
@@ -20,13 +26,6 @@ std::optional<double> WeightedMean::value() const {
 }
 
 template <int dim>
-bool VisibleInterpolation<dim>::is_clear(SampleKind kind, const Point<dim>& x) const {
-  const Point<dim> offset = sample_offset<dim>(kind);
-  const Point<dim> lower = (x - offset).array().floor().matrix() + offset;
-  return nearby_->clear(physical(Box<dim>(lower, lower + Point<dim>::Ones())));
-}
-
-template <int dim>
 bool VisibleInterpolation<dim>::all_count(SampleKind kind, const Point<dim>& x,
                                           const Stencil<dim>& stencil) const {
   // At a closed lower side the velocity is zero, whatever the field says.
@@ -40,9 +39,34 @@ bool VisibleInterpolation<dim>::all_count(SampleKind kind, const Point<dim>& x,
 }
 
 template <int dim>
+double VisibleInterpolation<dim>::add_seen(SampleKind kind, const Point<dim>& x,
+                                           const Stencil<dim>& stencil, unsigned seen,
+                                           const double* field, WeightedMean& mean) const {
+  // At a closed lower side the velocity is zero, whatever the field says.
+  const bool at_closed_side = kind != cell_centers && usable_.closed_below[kind] && x[kind] < 1;
+  const char* usable = kind == cell_centers ? usable_.cells : usable_.faces[kind];
+  double hidden = 0;
+  for (int k = 0; k < 1 << dim; ++k) {
+    double weight = 1;
+    for (int a = 0; a < dim; ++a)
+      weight *= (k >> a & 1) != 0 ? stencil.weight[a] : 1 - stencil.weight[a];
+    const int id = stencil.id[k];
+    if (weight == 0)
+      continue;
+    if ((seen >> k & 1) == 0)
+      hidden += weight;
+    else if (id == Stencil<dim>::wall_sample || (at_closed_side && (k >> kind & 1) == 0))
+      mean.add(weight, 0);
+    else if (id >= 0 && usable[id])
+      mean.add(weight, field[id]);
+  }
+  return hidden;
+}
+
+template <int dim>
 template <typename Function>
-void VisibleInterpolation<dim>::for_each_sample(SampleKind kind, const Point<dim>& x, bool clear,
-                                                const Function& f) const {
+void VisibleInterpolation<dim>::send_rays(SampleKind kind, const Point<dim>& x, const double* field,
+                                          WeightedMean& mean, const Function& f) const {
   const auto samples = lattice_.corners(kind, x);
   const Point<dim> eye = physical(x);
   Box<dim> around(eye);
@@ -54,11 +78,14 @@ void VisibleInterpolation<dim>::for_each_sample(SampleKind kind, const Point<dim
       corners[a][k] = place[a];
   }
   typename NearbySurface<dim>::Hits hits;
-  if (!clear)
-    nearby_->look_around(eye, around, corners, hits);
-  for (int k = 0; k < 1 << dim; ++k)
-    if (samples[k].weight != 0)
-      f(samples[k], hits[k]);
+  nearby_->look_around(eye, around, corners, hits);
+  unsigned seen = 0;
+  for (int k = 0; k < 1 << dim; ++k) {
+    seen |= unsigned(!hits[k]) << k;
+    if (hits[k] && samples[k].weight != 0)
+      f(samples[k].weight, *hits[k]);
+  }
+  add_seen(kind, x, lattice_.locate(kind, x), seen, field, mean);
 }
 
 template <int dim>
@@ -66,21 +93,19 @@ void VisibleInterpolation<dim>::look(int axis, const Point<dim>& x, const double
   Sight& sight = sight_[axis];
   sight.visible = {};
   sight.hidden.clear();
-  const bool clear = is_clear(axis, x);
-  if (clear) {
-    const Stencil<dim> stencil = lattice_.locate(axis, x);
-    if (all_count(axis, x, stencil))
-      return sight.visible.add(1, interpolate<dim>(stencil, field));
-  }
-  for_each_sample(axis, x, clear, [&](const StencilCorner<dim>& corner, const auto& hit) {
-    if (hit)
-      sight.hidden.push_back({corner.weight, *hit});
-    else if (corner.id == Stencil<dim>::wall_sample ||
-             (usable_.closed_below[axis] && corner.position[axis] == 0))
-      sight.visible.add(corner.weight, 0);
-    else if (corner.id >= 0 && usable_.faces[axis][corner.id])
-      sight.visible.add(corner.weight, field[corner.id]);
-  });
+  const BoxVisibility<dim>* box = nearby_->visibility(axis).around(x);
+  const Stencil<dim> stencil = lattice_.locate(axis, x);
+  if (!box && all_count(axis, x, stencil))
+    return sight.visible.add(1, interpolate<dim>(stencil, field));
+  const Point<dim> eye = physical(x);
+  const auto seen = box ? box->seen_from(eye) : all_samples;
+  if (!seen)
+    return send_rays(axis, x, field, sight.visible, [&](double weight, const auto& hit) {
+      sight.hidden.push_back({weight, hit});
+    });
+  const double hidden = add_seen(axis, x, stencil, *seen, field, sight.visible);
+  if (hidden > 0)
+    sight.hidden.push_back({hidden, box->beside(nearby_->snapshot(), eye)});
 }
 
 template <int dim>
@@ -126,17 +151,15 @@ std::optional<double> VisibleInterpolation<dim>::velocity(int axis, const Point<
 
 template <int dim>
 std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x, const double* field) {
-  const bool clear = is_clear(cell_centers, x);
-  if (clear) {
-    const Stencil<dim> stencil = lattice_.locate(cell_centers, x);
-    if (all_count(cell_centers, x, stencil))
-      return interpolate<dim>(stencil, field);
-  }
+  const BoxVisibility<dim>* box = nearby_->visibility(cell_centers).around(x);
+  const Stencil<dim> stencil = lattice_.locate(cell_centers, x);
+  if (!box && all_count(cell_centers, x, stencil))
+    return interpolate<dim>(stencil, field);
   WeightedMean mean;
-  for_each_sample(cell_centers, x, clear, [&](const StencilCorner<dim>& corner, const auto& hit) {
-    if (!hit && corner.id >= 0 && usable_.cells[corner.id])
-      mean.add(corner.weight, field[corner.id]);
-  });
+  if (const auto seen = box ? box->seen_from(physical(x)) : all_samples)
+    add_seen(cell_centers, x, stencil, *seen, field, mean);
+  else
+    send_rays(cell_centers, x, field, mean, [](double, const auto&) {});
   return mean.value();
 }
 

@@ -73,13 +73,17 @@ class VisibleInterpolation {
   Point<dim> nearest_surface_velocity(const Point<dim>& x) const;
 
  private:
-  /// True if no simplex comes near the box of samples around x.
-  bool is_clear(SampleKind kind, const Point<dim>& x) const;
   /// True if all samples of the stencil around x have values that count.
   bool all_count(SampleKind kind, const Point<dim>& x, const Stencil<dim>& stencil) const;
-  /// Calls f(sample, what hides it) for the samples around x that count. `clear`: `is_clear` of x.
+  /// Adds those of the samples around x that are `seen` (bits) and count; returns the weight of the
+  /// others.
+  double add_seen(SampleKind kind, const Point<dim>& x, const Stencil<dim>& stencil, unsigned seen,
+                  const double* field, WeightedMean& mean) const;
+  /// Sends a ray to each sample around x: adds those that are seen and count, and calls
+  /// f(weight, what hides it) for the others.
   template <typename Function>
-  void for_each_sample(SampleKind kind, const Point<dim>& x, bool clear, const Function& f) const;
+  void send_rays(SampleKind kind, const Point<dim>& x, const double* field, WeightedMean& mean,
+                 const Function& f) const;
   struct Hidden {
     double weight = 0;
     SurfacePoint<dim> hit;
