@@ -334,26 +334,35 @@ void FieldAdvection<dim>::advect_near_surfaces(std::vector<AdvectedField<dim>>& 
 
 template <int dim>
 void FieldAdvection<dim>::correct(std::vector<AdvectedField<dim>>& fields) {
+  const int n_tiles = frame_.setting.grid.n_owned_tiles();
   std::vector<const double*> carried;
-  for (AdvectedField<dim>& advected : fields)
+  for (AdvectedField<dim>& advected : fields) {
     carried.push_back(
         frame_.setting.halo.fetch(advected.half_way, advected.storage, advected.beyond).data());
-  for (int tile = 0; tile < frame_.setting.grid.n_owned_tiles(); ++tile) {
-    if (frame_.plans[tile].by_strips && correct_rows(fields, carried, tile))
+    advected.error.assign(advected.start->size(), 0);
+  }
+  for (int tile = 0; tile < n_tiles; ++tile) {
+    if (frame_.plans[tile].by_strips && estimate_rows(fields, carried, tile))
       continue;
     for (std::size_t p = 0; p < fields.size(); ++p)
       frame_.for_each_sample(fields[p].field.kind, tile, [&](int id, const Point<dim>& x) {
-        correct_single(fields[p], carried[p], id, x);
+        estimate_single(fields[p], carried[p], id, x);
       });
+  }
+  for (AdvectedField<dim>& advected : fields) {
+    const double* error = frame_.setting.halo.fetch(advected.error, advected.storage, 0.0).data();
+    for (int tile = 0; tile < n_tiles; ++tile)
+      apply_smoothed(advected, error, tile);
   }
 }
 
 template <int dim>
-bool FieldAdvection<dim>::correct_rows(std::vector<AdvectedField<dim>>& fields,
-                                       const std::vector<const double*>& carried, int tile) {
+bool FieldAdvection<dim>::estimate_rows(std::vector<AdvectedField<dim>>& fields,
+                                        const std::vector<const double*>& carried, int tile) {
   TileBlock<dim>& block = *frame_.block;
   if (!block.enter(frame_.setting.grid.tile_begin(tile)))
     return false;
+  const StripValues<dim> zero = StripValues<dim>::Zero(), one = StripValues<dim>::Ones();
   for (std::size_t p = 0; p < fields.size(); ++p) {
     AdvectedField<dim>& advected = fields[p];
     block.load(advected.field.kind, carried[p]);
@@ -362,34 +371,85 @@ bool FieldAdvection<dim>::correct_rows(std::vector<AdvectedField<dim>>& fields,
       const StripRays<dim> rays = block.trace(row, 1);
       block.look_up(rays.end, returned);
       const StripValues<dim> start = row_of<dim>(advected.start->data(), first);
-      const StripValues<dim> half_way = row_of<dim>(advected.half_way.data(), first);
-      const StripValues<dim> low = row_of<dim>(advected.low, first);
-      const StripValues<dim> high = row_of<dim>(advected.high.get(), first);
-      const StripValues<dim> corrected = half_way - 0.5 * (returned - start);
-      row_of<dim>(advected.result->data(), first) =
-          chosen(rays.clipped, half_way, within(corrected, low, high, half_way));
+      const StripValues<dim> low =
+          chosen(rays.clipped, one, StripValues<dim>(row_of<dim>(advected.low, first)));
+      const StripValues<dim> high =
+          chosen(rays.clipped, zero, StripValues<dim>(row_of<dim>(advected.high.get(), first)));
+      row_of<dim>(advected.low, first) = low;
+      row_of<dim>(advected.high.get(), first) = high;
+      row_of<dim>(advected.error.data(), first) =
+          (low <= high).select(0.5 * (returned - start), zero);
     });
   }
   return true;
 }
 
 template <int dim>
-void FieldAdvection<dim>::correct_single(AdvectedField<dim>& advected, const double* carried,
-                                         int id, const Point<dim>& x) const {
-  const bool may_correct = advected.may_correct(id);
-  const double low = advected.low[id];  // where the result goes
-  double& result = (*advected.result)[id];
-  result = advected.half_way[id];
-  if (!may_correct)
+void FieldAdvection<dim>::estimate_single(AdvectedField<dim>& advected, const double* carried,
+                                          int id, const Point<dim>& x) const {
+  if (!advected.may_correct(id))
     return;
   const Ray<dim> ray = frame_.tracer->trace(x, 1);
-  if (!ray.complete || ray.clipped)
-    return;
-  const Stencil<dim> stencil = frame_.lattice->locate(advected.field.kind, ray.end);
-  if (!stencil.complete())
-    return;
-  const double error = 0.5 * (interpolate<dim>(stencil, carried) - (*advected.start)[id]);
-  result = std::clamp(result - error, low, advected.high[id]);
+  const bool is_whole = ray.complete && !ray.clipped;
+  const Stencil<dim> stencil = frame_.lattice->locate(advected.field.kind, is_whole ? ray.end : x);
+  if (is_whole && stencil.complete())
+    advected.error[id] = 0.5 * (interpolate<dim>(stencil, carried) - (*advected.start)[id]);
+  else
+    advected.forbid_correction(id);
+}
+
+template <int dim>
+StripValues<dim> FieldAdvection<dim>::sum_beside(SampleKind kind, const double* error,
+                                                 const Index<dim>& cell, int first) const {
+  constexpr int width = tile_width<dim>;
+  const auto beside = [&](int id, Index<dim> place, int axis, int step) {
+    const int in_tile = (place[axis] & (width - 1)) + step;
+    place[axis] += step;
+    if (in_tile >= 0 && in_tile < width && place[axis] < frame_.samples_end(kind, axis))
+      return id + (step << (log_tile_width<dim> * axis));
+    Point<dim> x = sample_offset<dim>(kind);
+    for (int a = 0; a < dim; ++a)
+      x[a] += place[a];
+    const int found = frame_.lattice->locate(kind, x).id[0];
+    return found < 0 ? id : found;
+  };
+  StripValues<dim> sum = StripValues<dim>::Zero();
+  for (int axis = 1; axis < dim; ++axis)
+    for (const int step : {-1, 1})
+      sum += row_of<dim>(error, beside(first, cell, axis, step));
+  const int last = std::min(width, frame_.samples_end(kind, 0) - cell[0]) - 1;
+  Index<dim> last_cell = cell;
+  last_cell[0] += last;
+  std::array<double, width + 2> row;
+  std::copy_n(error + first, width, row.begin() + 1);
+  row[0] = error[beside(first, cell, 0, -1)];
+  row[last + 2] = error[beside(first + last, last_cell, 0, 1)];
+  for (int i = 0; i < width; ++i)
+    sum[i] += row[i] + row[i + 2];
+  return sum;
+}
+
+/// With a share of 1/24 for each sample beside, what is left of the dissipation of semi-Lagrangian
+/// advection in space is |u| h^3/48 u'''', a quarter of that of third-order upwinding. Energy falls
+/// then at all steps; without it, it grows.
+template <int dim>
+void FieldAdvection<dim>::apply_smoothed(AdvectedField<dim>& advected, const double* error,
+                                         int tile) const {
+  constexpr double share = 1. / 24;
+  const SampleKind kind = advected.field.kind;
+  for_each_strip(frame_, kind, tile, [&](const Index<dim>& row, int first) {
+    Index<dim> cell = frame_.setting.grid.tile_begin(tile);
+    for (int a = 1; a < dim; ++a)
+      cell[a] += row[a];
+    const StripValues<dim> own = row_of<dim>(error, first);
+    const StripValues<dim> smoothed =
+        own + share * (sum_beside(kind, error, cell, first) - 2 * dim * own);
+    const StripValues<dim> half_way = row_of<dim>(advected.half_way.data(), first);
+    const StripValues<dim> low = row_of<dim>(advected.low, first);
+    const StripValues<dim> high = row_of<dim>(advected.high.get(), first);
+    row_of<dim>(advected.result->data(), first) =
+        within(StripValues<dim>(half_way - smoothed), low, high, half_way);
+  });
 }
 
 template class FieldAdvection<2>;

@@ -21,6 +21,7 @@ struct AdvectedField {
   /// where the result will be.
   double* low = nullptr;
   std::unique_ptr<double[]> high;
+  CellField error;  ///< MacCormack's estimate of the error of `half_way`; 0 where there is none
   /// Rays of the strips of a tile near surfaces that is advected by strips.
   std::vector<StripRays<dim>> back, forth;
 
@@ -67,12 +68,19 @@ class FieldAdvection {
   /// takes the change where its fluid is. Returns false if it is no such face.
   bool advect_open_part(AdvectedField<dim>& advected, int id, const Point<dim>& x);
   /// Corrects by half of the error that semi-Lagrangian advection there and back again shows
-  /// (MacCormack).
+  /// (MacCormack), smoothed over the samples beside each. Central differences in the form u . grad
+  /// u, which the plain correction comes to as the step falls, make kinetic energy of what the grid
+  /// does not resolve, without end.
   void correct(std::vector<AdvectedField<dim>>& fields);
-  bool correct_rows(std::vector<AdvectedField<dim>>& fields,
-                    const std::vector<const double*>& carried, int tile);
-  void correct_single(AdvectedField<dim>& advected, const double* carried, int id,
-                      const Point<dim>& x) const;
+  bool estimate_rows(std::vector<AdvectedField<dim>>& fields,
+                     const std::vector<const double*>& carried, int tile);
+  void estimate_single(AdvectedField<dim>& advected, const double* carried, int id,
+                       const Point<dim>& x) const;
+  void apply_smoothed(AdvectedField<dim>& advected, const double* error, int tile) const;
+  /// Returns the sums of the errors beside the samples of a row, 2 along each axis; `cell` is that
+  /// of the first, with this id. Beyond the sides of the domain is the last sample.
+  StripValues<dim> sum_beside(SampleKind kind, const double* error, const Index<dim>& cell,
+                              int first) const;
 
   /// True if transport advects a sample; if not, `has_value` says whether it has a value
   /// nevertheless.
