@@ -97,7 +97,7 @@ class Books {
   /// has the surface at its side. An empty cell above one with a surface takes none, and a full
   /// one below it gives none: a trace in it would be a second surface.
   double redistribution_weight(int cell, bool takes) const {
-    constexpr double at_side = 0.25;  // what a surface at a side has in either of its two cells
+    constexpr double at_side = 0.25;  // capacity of either of the two cells at a surface's side
     const double liquid = fractions_.liquid[cell];
     if (is_mixed(liquid)) {
       const bool crosses = is_beside_other(domain_.grid, solids_, fractions_.liquid, cell);
