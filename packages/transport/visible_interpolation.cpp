@@ -8,6 +8,14 @@ namespace lockstep {
 
 namespace {
 constexpr std::optional<unsigned> all_samples = ~0u;
+
+template <int dim>
+double weight_of(const Stencil<dim>& stencil, int k) {
+  double weight = 1;
+  for (int a = 0; a < dim; ++a)
+    weight *= (k >> a & 1) != 0 ? stencil.weight[a] : 1 - stencil.weight[a];
+  return weight;
+}
 }  // namespace
 
 void WeightedMean::add(double weight, double value) {
@@ -39,28 +47,44 @@ bool VisibleInterpolation<dim>::all_count(SampleKind kind, const Point<dim>& x,
 }
 
 template <int dim>
-double VisibleInterpolation<dim>::add_seen(SampleKind kind, const Point<dim>& x,
-                                           const Stencil<dim>& stencil, unsigned seen,
-                                           const double* field, WeightedMean& mean) const {
+void VisibleInterpolation<dim>::add_seen(SampleKind kind, const Point<dim>& x,
+                                         const Stencil<dim>& stencil, unsigned seen,
+                                         const double* field, WeightedMean& mean) const {
   // At a closed lower side the velocity is zero, whatever the field says.
   const bool at_closed_side = kind != cell_centers && usable_.closed_below[kind] && x[kind] < 1;
   const char* usable = kind == cell_centers ? usable_.cells : usable_.faces[kind];
-  double hidden = 0;
   for (int k = 0; k < 1 << dim; ++k) {
-    double weight = 1;
-    for (int a = 0; a < dim; ++a)
-      weight *= (k >> a & 1) != 0 ? stencil.weight[a] : 1 - stencil.weight[a];
+    const double weight = weight_of<dim>(stencil, k);
     const int id = stencil.id[k];
-    if (weight == 0)
+    if (weight == 0 || (seen >> k & 1) == 0)
       continue;
-    if ((seen >> k & 1) == 0)
-      hidden += weight;
-    else if (id == Stencil<dim>::wall_sample || (at_closed_side && (k >> kind & 1) == 0))
+    if (id == Stencil<dim>::wall_sample || (at_closed_side && (k >> kind & 1) == 0))
       mean.add(weight, 0);
     else if (id >= 0 && usable[id])
       mean.add(weight, field[id]);
   }
-  return hidden;
+}
+
+template <int dim>
+std::optional<typename VisibleInterpolation<dim>::Hidden>
+VisibleInterpolation<dim>::hidden_together(SampleKind kind, const Point<dim>& x,
+                                           const Stencil<dim>& stencil, unsigned seen,
+                                           const BoxVisibility<dim>& box) const {
+  double sum = 0;
+  Point<dim> beyond = Point<dim>::Zero();  // share of the upper samples along each axis
+  for (int k = 0; k < 1 << dim; ++k) {
+    const double weight = (seen >> k & 1) != 0 ? 0 : weight_of<dim>(stencil, k);
+    sum += weight;
+    for (int a = 0; a < dim; ++a)
+      beyond[a] += (k >> a & 1) * weight;
+  }
+  if (sum == 0)
+    return std::nullopt;
+  const Point<dim> offset = sample_offset<dim>(kind);
+  const Point<dim> lower = (x - offset).array().floor().matrix() + offset;
+  const Point<dim> eye = physical(x);
+  const auto hit = nearby_->first_hit(eye, physical(Point<dim>(lower + beyond / sum)));
+  return Hidden{sum, hit ? *hit : box.beside(nearby_->snapshot(), eye)};
 }
 
 template <int dim>
@@ -97,15 +121,14 @@ void VisibleInterpolation<dim>::look(int axis, const Point<dim>& x, const double
   const Stencil<dim> stencil = lattice_.locate(axis, x);
   if (!box && all_count(axis, x, stencil))
     return sight.visible.add(1, interpolate<dim>(stencil, field));
-  const Point<dim> eye = physical(x);
-  const auto seen = box ? box->seen_from(eye) : all_samples;
+  const auto seen = box ? box->seen_from(physical(x)) : all_samples;
   if (!seen)
     return send_rays(axis, x, field, sight.visible, [&](double weight, const auto& hit) {
       sight.hidden.push_back({weight, hit});
     });
-  const double hidden = add_seen(axis, x, stencil, *seen, field, sight.visible);
-  if (hidden > 0)
-    sight.hidden.push_back({hidden, box->beside(nearby_->snapshot(), eye)});
+  add_seen(axis, x, stencil, *seen, field, sight.visible);
+  if (const auto hidden = box ? hidden_together(axis, x, stencil, *seen, *box) : std::nullopt)
+    sight.hidden.push_back(*hidden);
 }
 
 template <int dim>

@@ -9,6 +9,9 @@
 
 namespace lockstep {
 
+template <int dim>
+class BoxVisibility;
+
 /// Marks the samples that may be interpolated from, by id on the sample grid (0: not).
 template <int dim>
 struct UsableSamples {
@@ -75,10 +78,9 @@ class VisibleInterpolation {
  private:
   /// True if all samples of the stencil around x have values that count.
   bool all_count(SampleKind kind, const Point<dim>& x, const Stencil<dim>& stencil) const;
-  /// Adds those of the samples around x that are `seen` (bits) and count; returns the weight of the
-  /// others.
-  double add_seen(SampleKind kind, const Point<dim>& x, const Stencil<dim>& stencil, unsigned seen,
-                  const double* field, WeightedMean& mean) const;
+  /// Adds those of the samples around x that are `seen` (bits) and count.
+  void add_seen(SampleKind kind, const Point<dim>& x, const Stencil<dim>& stencil, unsigned seen,
+                const double* field, WeightedMean& mean) const;
   /// Sends a ray to each sample around x: adds those that are seen and count, and calls
   /// f(weight, what hides it) for the others.
   template <typename Function>
@@ -88,6 +90,11 @@ class VisibleInterpolation {
     double weight = 0;
     SurfacePoint<dim> hit;
   };
+  /// All samples around x that are not `seen`, as one behind what hides their centre of weights:
+  /// where x passes from one box of samples to the next, that is the same. None if all are seen.
+  std::optional<Hidden> hidden_together(SampleKind kind, const Point<dim>& x,
+                                        const Stencil<dim>& stencil, unsigned seen,
+                                        const BoxVisibility<dim>& box) const;
   /// Visibility of the samples of one component around a point.
   struct Sight {
     WeightedMean visible;

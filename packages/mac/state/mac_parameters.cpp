@@ -54,13 +54,14 @@ ParameterList mac_parameters(const InterfaceRegistry<dim>* interfaces) {
   std::vector<std::string> schemes;
   for (const auto& [name, scheme] : advection_schemes())
     schemes.push_back(name);
-  declare_choice(list, "Advection", "maccormack", schemes,
-                 "semi-lagrangian: first order, damps; maccormack: second order where smooth, "
-                 "clamped to the values around, with an error taken off that is smoothed, so that "
-                 "what the grid does not resolve gains no energy; cubic: semi-lagrangian with cubic "
-                 "interpolation, third order, damps least, within the range of the 4 samples around "
-                 "along each axis. Any step is stable with all; near surfaces all are "
-                 "semi-lagrangian.");
+  declare_choice(
+      list, "Advection", "maccormack", schemes,
+      "semi-lagrangian: first order, damps; maccormack: second order where smooth, "
+      "clamped to the values around, with an error taken off that is smoothed, so that "
+      "what the grid does not resolve gains no energy; cubic: semi-lagrangian with cubic "
+      "interpolation, third order, damps least, within the range of the 4 samples around "
+      "along each axis. Any step is stable with all; near surfaces all are "
+      "semi-lagrangian.");
   declare_between(
       list, "Order in Time", 0, 0, 2,
       "Of advection and all else together. 1: as in the paper, advection knows nothing of pressure "
