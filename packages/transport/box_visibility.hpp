@@ -11,7 +11,7 @@ namespace lockstep {
 
 /// Sight within a box of 2^dim samples that surfaces cut. Where these lie within a thin slab whose
 /// two sides no open edge of the box joins, a point on one side of the slab sees the samples of
-/// that side, and none of the others.
+/// that side, and none of the other.
 template <int dim>
 class BoxVisibility {
  public:
@@ -25,11 +25,17 @@ class BoxVisibility {
   BoxVisibility(const NearbySurface<dim>& surface, const std::vector<Image>& images,
                 const Box<dim>& box, const Corners& samples);
 
-  /// Samples that a point in the box sees [m], bit k for corner k; none: only rays tell.
-  std::optional<unsigned> seen_from(const Point<dim>& eye) const {
+  /// Samples around a point, bit k for corner k.
+  struct Seen {
+    unsigned seen = 0;     ///< by the point
+    unsigned unknown = 0;  ///< those in the slab, of which only rays tell
+  };
+  /// Samples that a point in the box sees [m]; none: only rays tell.
+  std::optional<Seen> seen_from(const Point<dim>& eye) const {
     const double height = normal_.dot(eye) - middle_;
-    const unsigned seen = seen_[height > 0];
-    return std::abs(height) <= half_thickness_ || seen == 0 ? std::nullopt : std::optional(seen);
+    if (!is_flat_ || std::abs(height) <= half_thickness_)
+      return std::nullopt;
+    return Seen{samples_[height > 0 ? 2 : 0], samples_[1]};
   }
   /// Point of the surface beside a point in the box: the nearest of the simplex that is nearest to
   /// the middle of the box.
@@ -38,13 +44,14 @@ class BoxVisibility {
  private:
   void find_slab(const NearbySurface<dim>& surface, const std::vector<Image>& images,
                  const Box<dim>& box);
-  /// Joins samples by open edges, and sets what both sides see; false if these see each other.
+  /// Sorts the samples by their sides of the slab; false if open edges join both.
   bool part_samples(const NearbySurface<dim>& surface, const Corners& samples);
 
   Point<dim> normal_ =
       Point<dim>::Zero();  ///< normal of the slab |normal . x - middle| <= half_thickness [1]
   double middle_ = 0, half_thickness_ = 0;  ///< [m]
-  std::array<std::uint8_t, 2> seen_{};      ///< samples seen from below and from above; 0: unknown
+  bool is_flat_ = false;                    ///< the slab is thin, and nothing is seen through it
+  std::array<std::uint8_t, 3> samples_{};   ///< below, in and above the slab, bit k for corner k
   int simplex_ = -1;                        ///< the nearest to the middle of the box
   Point<dim> shift_ = Point<dim>::Zero();   ///< from its real place to the image in the box [m]
 };

@@ -410,20 +410,21 @@ StripValues<dim> FieldAdvection<dim>::sum_beside(SampleKind kind, const double* 
     Point<dim> x = sample_offset<dim>(kind);
     for (int a = 0; a < dim; ++a)
       x[a] += place[a];
-    const int found = frame_.lattice->locate(kind, x).id[0];
-    return found < 0 ? id : found;
+    return frame_.lattice->locate(kind, x).id[0];
   };
+  const auto error_at = [&](int id) { return id < 0 ? 0 : error[id]; };
   StripValues<dim> sum = StripValues<dim>::Zero();
   for (int axis = 1; axis < dim; ++axis)
     for (const int step : {-1, 1})
-      sum += row_of<dim>(error, beside(first, cell, axis, step));
+      if (const int id = beside(first, cell, axis, step); id >= 0)
+        sum += row_of<dim>(error, id);
   const int last = std::min(width, frame_.samples_end(kind, 0) - cell[0]) - 1;
   Index<dim> last_cell = cell;
   last_cell[0] += last;
   std::array<double, width + 2> row;
   std::copy_n(error + first, width, row.begin() + 1);
-  row[0] = error[beside(first, cell, 0, -1)];
-  row[last + 2] = error[beside(first + last, last_cell, 0, 1)];
+  row[0] = error_at(beside(first, cell, 0, -1));
+  row[last + 2] = error_at(beside(first + last, last_cell, 0, 1));
   for (int i = 0; i < width; ++i)
     sum[i] += row[i] + row[i + 2];
   return sum;

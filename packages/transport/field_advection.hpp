@@ -78,7 +78,8 @@ class FieldAdvection {
                        const Point<dim>& x) const;
   void apply_smoothed(AdvectedField<dim>& advected, const double* error, int tile) const;
   /// Returns the sums of the errors beside the samples of a row, 2 along each axis; `cell` is that
-  /// of the first, with this id. Beyond the sides of the domain is the last sample.
+  /// of the first, with this id. Beyond the sides of the domain is the last sample; a wall has
+  /// none.
   StripValues<dim> sum_beside(SampleKind kind, const double* error, const Index<dim>& cell,
                               int first) const;
 

@@ -7,7 +7,8 @@
 namespace lockstep {
 
 namespace {
-constexpr std::optional<unsigned> all_samples = ~0u;
+template <int dim>
+constexpr unsigned all_samples = (1u << (1 << dim)) - 1;
 
 template <int dim>
 double weight_of(const Stencil<dim>& stencil, int k) {
@@ -68,12 +69,12 @@ void VisibleInterpolation<dim>::add_seen(SampleKind kind, const Point<dim>& x,
 template <int dim>
 std::optional<typename VisibleInterpolation<dim>::Hidden>
 VisibleInterpolation<dim>::hidden_together(SampleKind kind, const Point<dim>& x,
-                                           const Stencil<dim>& stencil, unsigned seen,
+                                           const Stencil<dim>& stencil, unsigned hidden,
                                            const BoxVisibility<dim>& box) const {
   double sum = 0;
   Point<dim> beyond = Point<dim>::Zero();  // share of the upper samples along each axis
   for (int k = 0; k < 1 << dim; ++k) {
-    const double weight = (seen >> k & 1) != 0 ? 0 : weight_of<dim>(stencil, k);
+    const double weight = (hidden >> k & 1) == 0 ? 0 : weight_of<dim>(stencil, k);
     sum += weight;
     for (int a = 0; a < dim; ++a)
       beyond[a] += (k >> a & 1) * weight;
@@ -89,8 +90,8 @@ VisibleInterpolation<dim>::hidden_together(SampleKind kind, const Point<dim>& x,
 
 template <int dim>
 template <typename Function>
-void VisibleInterpolation<dim>::send_rays(SampleKind kind, const Point<dim>& x, const double* field,
-                                          WeightedMean& mean, const Function& f) const {
+unsigned VisibleInterpolation<dim>::send_rays(SampleKind kind, const Point<dim>& x,
+                                              const Function& f) const {
   const auto samples = lattice_.corners(kind, x);
   const Point<dim> eye = physical(x);
   Box<dim> around(eye);
@@ -109,7 +110,37 @@ void VisibleInterpolation<dim>::send_rays(SampleKind kind, const Point<dim>& x, 
     if (hits[k] && samples[k].weight != 0)
       f(samples[k].weight, *hits[k]);
   }
-  add_seen(kind, x, lattice_.locate(kind, x), seen, field, mean);
+  return seen;
+}
+
+template <int dim>
+template <typename Function>
+unsigned VisibleInterpolation<dim>::send_rays_to(unsigned unknown, SampleKind kind,
+                                                 const Point<dim>& x, const Function& f) const {
+  const auto samples = lattice_.corners(kind, x);
+  unsigned seen = 0;
+  for (int k = 0; k < 1 << dim; ++k) {
+    if ((unknown >> k & 1) == 0 || samples[k].weight == 0)
+      continue;
+    if (const auto hit = nearby_->first_hit(physical(x), physical(samples[k].position)))
+      f(samples[k].weight, *hit);
+    else
+      seen |= 1u << k;
+  }
+  return seen;
+}
+
+template <int dim>
+template <typename Function>
+typename VisibleInterpolation<dim>::Found VisibleInterpolation<dim>::find_seen(
+    SampleKind kind, const Point<dim>& x, const BoxVisibility<dim>* box, const Function& f) const {
+  if (!box)
+    return {all_samples<dim>, 0};
+  const auto known = box->seen_from(physical(x));
+  if (!known)
+    return {send_rays(kind, x, f), 0};
+  const unsigned seen = known->unknown == 0 ? 0 : send_rays_to(known->unknown, kind, x, f);
+  return {known->seen | seen, all_samples<dim> & ~(known->seen | known->unknown)};
 }
 
 template <int dim>
@@ -121,14 +152,13 @@ void VisibleInterpolation<dim>::look(int axis, const Point<dim>& x, const double
   const Stencil<dim> stencil = lattice_.locate(axis, x);
   if (!box && all_count(axis, x, stencil))
     return sight.visible.add(1, interpolate<dim>(stencil, field));
-  const auto seen = box ? box->seen_from(physical(x)) : all_samples;
-  if (!seen)
-    return send_rays(axis, x, field, sight.visible, [&](double weight, const auto& hit) {
-      sight.hidden.push_back({weight, hit});
-    });
-  add_seen(axis, x, stencil, *seen, field, sight.visible);
-  if (const auto hidden = box ? hidden_together(axis, x, stencil, *seen, *box) : std::nullopt)
-    sight.hidden.push_back(*hidden);
+  const Found found = find_seen(axis, x, box, [&](double weight, const auto& hit) {
+    sight.hidden.push_back({weight, hit});
+  });
+  add_seen(axis, x, stencil, found.seen, field, sight.visible);
+  if (found.hidden != 0)
+    if (const auto hidden = hidden_together(axis, x, stencil, found.hidden, *box))
+      sight.hidden.push_back(*hidden);
 }
 
 template <int dim>
@@ -179,10 +209,8 @@ std::optional<double> VisibleInterpolation<dim>::scalar(const Point<dim>& x, con
   if (!box && all_count(cell_centers, x, stencil))
     return interpolate<dim>(stencil, field);
   WeightedMean mean;
-  if (const auto seen = box ? box->seen_from(physical(x)) : all_samples)
-    add_seen(cell_centers, x, stencil, *seen, field, mean);
-  else
-    send_rays(cell_centers, x, field, mean, [](double, const auto&) {});
+  const Found found = find_seen(cell_centers, x, box, [](double, const auto&) {});
+  add_seen(cell_centers, x, stencil, found.seen, field, mean);
   return mean.value();
 }
 

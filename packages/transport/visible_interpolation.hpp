@@ -81,19 +81,31 @@ class VisibleInterpolation {
   /// Adds those of the samples around x that are `seen` (bits) and count.
   void add_seen(SampleKind kind, const Point<dim>& x, const Stencil<dim>& stencil, unsigned seen,
                 const double* field, WeightedMean& mean) const;
-  /// Sends a ray to each sample around x: adds those that are seen and count, and calls
+  /// Sends rays to all samples around x: returns those that are seen, and calls
   /// f(weight, what hides it) for the others.
   template <typename Function>
-  void send_rays(SampleKind kind, const Point<dim>& x, const double* field, WeightedMean& mean,
-                 const Function& f) const;
+  unsigned send_rays(SampleKind kind, const Point<dim>& x, const Function& f) const;
+  /// Sends rays to those of the samples around x that are `unknown` alone.
+  template <typename Function>
+  unsigned send_rays_to(unsigned unknown, SampleKind kind, const Point<dim>& x,
+                        const Function& f) const;
+  struct Found {
+    unsigned seen = 0;    ///< samples, bit k for corner k
+    unsigned hidden = 0;  ///< those to which no ray was sent
+  };
+  /// Finds the samples around x that are seen, and calls f(weight, what hides it) for those that
+  /// rays have found hidden; `box`: that around x, null if no surface comes into it.
+  template <typename Function>
+  Found find_seen(SampleKind kind, const Point<dim>& x, const BoxVisibility<dim>* box,
+                  const Function& f) const;
   struct Hidden {
     double weight = 0;
     SurfacePoint<dim> hit;
   };
-  /// All samples around x that are not `seen`, as one behind what hides their centre of weights:
-  /// where x passes from one box of samples to the next, that is the same. None if all are seen.
+  /// The `hidden` samples around x as one behind what hides their centre of weights: where x passes
+  /// from one box of samples to the next, that is the same. None if they have no weight.
   std::optional<Hidden> hidden_together(SampleKind kind, const Point<dim>& x,
-                                        const Stencil<dim>& stencil, unsigned seen,
+                                        const Stencil<dim>& stencil, unsigned hidden,
                                         const BoxVisibility<dim>& box) const;
   /// Visibility of the samples of one component around a point.
   struct Sight {

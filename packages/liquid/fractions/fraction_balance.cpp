@@ -48,6 +48,19 @@ bool is_beside_other(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
   return false;
 }
 
+/// True for an empty cell beside one that is full but for a thousandth, or the reverse.
+template <int dim>
+bool is_beside_jump(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
+                    const CellField& liquid, int cell) {
+  constexpr double nearly = 0.999;
+  for (int i = 0; i < 2 * dim; ++i) {
+    const int other = solids.seen_neighbor(grid, cell, i / 2, i % 2);
+    if (other >= 0 && std::abs(liquid[other] - liquid[cell]) > nearly)
+      return true;
+  }
+  return false;
+}
+
 /// Liquid components and their volume defects [cells].
 template <int dim>
 class Books {
@@ -94,18 +107,20 @@ class Books {
  private:
   /// Capacity of a cell: the liquid it takes (or gives) per cell that the surface moves, roughly
   /// the area of the surface in it [1]. A nearly empty cell beside a fuller one, and the reverse,
-  /// has the surface at its side. An empty cell above one with a surface takes none, and a full
-  /// one below it gives none: a trace in it would be a second surface.
+  /// has the surface at its side, as has an empty one beside a nearly full one. Other empty cells
+  /// above one with a surface take none, and full ones below it give none: a trace in them would
+  /// be a second surface.
   double redistribution_weight(int cell, bool takes) const {
     constexpr double at_side = 0.25;  // capacity of either of the two cells at a surface's side
     const double liquid = fractions_.liquid[cell];
     if (is_mixed(liquid)) {
       const bool crosses = is_beside_other(domain_.grid, solids_, fractions_.liquid, cell);
-      return std::max(4 * liquid * (1 - liquid), crosses ? at_side : 0);
+      const double room = takes ? 1 - liquid : liquid;
+      return std::max(4 * liquid * (1 - liquid), crosses ? std::min(at_side, 4 * room) : 0);
     }
     const bool can = takes ? liquid < 0.5 : liquid > 0.5;
     const bool near = std::abs(phi_[cell]) < reach_of_labels * domain_.spacing();
-    const bool jumps = is_beside_full_jump(domain_.grid, solids_, fractions_.liquid, cell);
+    const bool jumps = is_beside_jump(domain_.grid, solids_, fractions_.liquid, cell);
     return can && near && jumps ? at_side : 0;
   }
   void add_up() {

@@ -61,8 +61,8 @@ double youngs_weight(const Index<dim>& offset, int axis) {
     weight *= a == axis || offset[a] != 0 ? 1 : 2;
   return weight;
 }
-}  // namespace
 
+/// True for a full cell beside an empty one, or the reverse, without a plane in either.
 template <int dim>
 bool is_beside_full_jump(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
                          const CellField& fraction, int cell) {
@@ -74,6 +74,7 @@ bool is_beside_full_jump(const TiledGrid<dim>& grid, const SolidCells<dim>& soli
   }
   return false;
 }
+}  // namespace
 
 template <int dim>
 Point<dim> FractionPlanes<dim>::normal(const SolidCells<dim>& solids, const CellField& fraction,
@@ -177,10 +178,6 @@ void FractionPlanes<dim>::set_distance(const SolidCells<dim>& solids,
   domain_.halo.fill(phi);
 }
 
-template bool is_beside_full_jump<2>(const TiledGrid<2>&, const SolidCells<2>&, const CellField&,
-                                     int);
-template bool is_beside_full_jump<3>(const TiledGrid<3>&, const SolidCells<3>&, const CellField&,
-                                     int);
 template class FractionPlanes<2>;
 template class FractionPlanes<3>;
 

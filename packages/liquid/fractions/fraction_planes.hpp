@@ -11,11 +11,6 @@ inline bool is_mixed(double fraction) {
   return fraction > negligible_fraction && fraction < 1 - negligible_fraction;
 }
 
-/// True for a full cell beside an empty one, or the reverse, without a plane in either. Local.
-template <int dim>
-bool is_beside_full_jump(const TiledGrid<dim>& grid, const SolidCells<dim>& solids,
-                         const CellField& fraction, int cell);
-
 /// The liquid's surface in mixed cells: a plane in each, with the normal of Aulisa et al. (2007),
 /// which is the better of columns' differences and Youngs' gradient. A neighbour that a surface
 /// hides counts as the nearest one in sight, so that the liquid meets solids and sides at 90

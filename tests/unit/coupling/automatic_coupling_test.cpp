@@ -10,7 +10,7 @@ namespace {
 
 template <int dim>
 CouplingChoice choice(const SurfaceMesh<dim>& mesh, double spacing, bool closed = true,
-                      double density = 2, bool rigid = true) {
+                      double density = 500, bool rigid = true) {
   SolidDescription solid;
   solid.name = "Body";
   solid.closed = closed;
@@ -33,11 +33,13 @@ TEST(AutomaticCoupling, TakesWholeFacesForBodiesWithNextToNoMass) {
             "\"Body\" is 1e-05 times as dense as the fluid");
 }
 
-TEST(AutomaticCoupling, AsksMoreMassOfSolidsThatDeform) {
+TEST(AutomaticCoupling, AsksForTwoHundredthsOfTheDensityOfTheFluid) {
   const SurfaceMesh<2> ball = ball_surface<2>(1, 0.1);
-  EXPECT_EQ(choice(ball, 0.5, true, 11, false).type, "flux");
-  EXPECT_EQ(choice(ball, 0.5, true, 2, false).reason,
-            "\"Body\" is 0.002 times as dense as the fluid");
+  for (const bool rigid : {true, false}) {
+    EXPECT_EQ(choice(ball, 0.5, true, 21, rigid).type, "flux");
+    EXPECT_EQ(choice(ball, 0.5, true, 2, rigid).reason,
+              "\"Body\" is 0.002 times as dense as the fluid");
+  }
 }
 
 TEST(AutomaticCoupling, TakesWholeFacesForThinSolids) {
