@@ -28,7 +28,7 @@ class BoxVisibility {
   /// Samples around a point, bit k for corner k.
   struct Seen {
     unsigned seen = 0;     ///< by the point
-    unsigned unknown = 0;  ///< those in the slab, of which only rays tell
+    unsigned unknown = 0;  ///< samples in the slab, of which only rays tell
   };
   /// Samples that a point in the box sees [m]; none: only rays tell.
   std::optional<Seen> seen_from(const Point<dim>& eye) const {

@@ -91,7 +91,7 @@ class VisibleInterpolation {
                         const Function& f) const;
   struct Found {
     unsigned seen = 0;    ///< samples, bit k for corner k
-    unsigned hidden = 0;  ///< those to which no ray was sent
+    unsigned hidden = 0;  ///< samples to which no ray was sent
   };
   /// Finds the samples around x that are seen, and calls f(weight, what hides it) for those that
   /// rays have found hidden; `box`: that around x, null if no surface comes into it.
