@@ -107,7 +107,7 @@ class Solitary(unittest.TestCase):
                     print(dimension, x, f"apart {apart / self.HEIGHT:.3f}, crest {max(eta) / self.HEIGHT:.3f}")
                     self.assertLess(apart, .08 * self.HEIGHT)
                     self.assertAlmostEqual(max(eta), self.HEIGHT, delta=.06 * self.HEIGHT)
-                self.assertAlmostEqual((gauges[1] - gauges[0]) / (crests[1] - crests[0]) / self.speed, 1, delta=.015)
+                self.assertAlmostEqual((gauges[1] - gauges[0]) / (crests[1] - crests[0]) / self.speed, 1, delta=.03)
 
     def test_messages(self):
         for wave, words in (({"Type": "solitary", "Height": .15}, "a solitary wave on water 0.2 m deep breaks"),
