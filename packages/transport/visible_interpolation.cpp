@@ -139,11 +139,6 @@ typename VisibleInterpolation<dim>::Found VisibleInterpolation<dim>::find_seen(
   const auto known = box->seen_from(physical(x));
   if (!known)
     return {send_rays(kind, x, f), 0};
-  // Not yet: with it a ballasted hull in space that rests begins to move
-  // (tests/scenes/test_settle.py).
-  constexpr bool takes_known = false;
-  if (!takes_known)
-    return {send_rays(kind, x, f), 0};
   const unsigned seen = known->unknown == 0 ? 0 : send_rays_to(known->unknown, kind, x, f);
   return {known->seen | seen, all_samples<dim> & ~(known->seen | known->unknown)};
 }
