@@ -136,8 +136,12 @@ class AtRest {
 
 /// Newton's step where all comes back, but along the acceleration where something falls: each
 /// eigenvector of the derivative by the size of its eigenvalue. Nothing along what meets no force.
-VectorXd step_down(const Eigen::MatrixXd& derivative, const VectorXd& acceleration) {
-  constexpr double none = 1e-6;
+/// What is held by less than a twentieth of the firmest may be held by errors of the grid alone,
+/// which come again with every cell. There the next place of rest lies within one, and a whole step
+/// would go past many of them to the side of the tank: it takes a quarter of a cell.
+VectorXd step_down(const Eigen::MatrixXd& derivative, const VectorXd& acceleration,
+                   const VectorXd& scale, double cell) {
+  constexpr double none = 1e-6, weak = 0.05;
   const Eigen::EigenSolver<Eigen::MatrixXd> modes(derivative);
   const Eigen::MatrixXcd vectors = modes.eigenvectors();
   Eigen::VectorXcd parts = vectors.fullPivLu().solve(acceleration.cast<std::complex<double>>());
@@ -145,6 +149,10 @@ VectorXd step_down(const Eigen::MatrixXd& derivative, const VectorXd& accelerati
   for (int i = 0; i < parts.size(); ++i) {
     const double size = std::abs(modes.eigenvalues()[i]);
     parts[i] = size > none * largest ? parts[i] / size : 0;
+    const double length =
+        std::abs(parts[i]) * vectors.col(i).cwiseAbs().cwiseProduct(scale).maxCoeff();
+    if (size < weak * largest && length > 0.25 * cell)
+      parts[i] *= 0.25 * cell / length;
   }
   return (vectors * parts).real();
 }
@@ -220,7 +228,7 @@ void settle(const std::function<Components<dim>(const ParameterList&)>& build,
       break;
     if (derivative.size() == 0)
       derivative = water.derivative(at, here, 1e-3 * cell * scale.cwiseInverse());
-    VectorXd step = step_down(derivative, here);
+    VectorXd step = step_down(derivative, here, scale, cell);
     const double length = step.cwiseProduct(scale).cwiseAbs().maxCoeff(), most = 0.25 * radius;
     step *= std::min(1., most / length);
     at += step;

@@ -102,12 +102,12 @@ class Solitary(unittest.TestCase):
                 crests = []
                 for x, eta in zip(gauges, heights):
                     apart = max(abs(h - self.profile(t - self.delay - x / self.speed)) for t, h in zip(times, eta))
-                    crest = max(range(len(eta)), key=lambda i: eta[i])
-                    crests.append(times[crest])
+                    tops = [(t, h - .8 * max(eta)) for t, h in zip(times, eta) if h > .8 * max(eta)]
+                    crests.append(sum(t * h for t, h in tops) / sum(h for _, h in tops))  # the highest step alone is off by two
                     print(dimension, x, f"apart {apart / self.HEIGHT:.3f}, crest {max(eta) / self.HEIGHT:.3f}")
                     self.assertLess(apart, .08 * self.HEIGHT)
                     self.assertAlmostEqual(max(eta), self.HEIGHT, delta=.06 * self.HEIGHT)
-                self.assertAlmostEqual((gauges[1] - gauges[0]) / (crests[1] - crests[0]) / self.speed, 1, delta=.03)
+                self.assertAlmostEqual((gauges[1] - gauges[0]) / (crests[1] - crests[0]) / self.speed, 1, delta=.015)
 
     def test_messages(self):
         for wave, words in (({"Type": "solitary", "Height": .15}, "a solitary wave on water 0.2 m deep breaks"),
