@@ -124,6 +124,14 @@ VisibilityTable<dim>::VisibilityTable(const NearbySurface<dim>& surface, SampleK
                  return surface.images()[i].comes_into(center, 0.5 * h, surface.tolerance());
                });
   known_.assign(boxes_.n_used(), -1);
+  for (int a = 0; a < dim; ++a) {
+    const auto cell_of = [&](double x) {
+      return static_cast<int>(std::lround((x - surface.lower()[a]) / h));
+    };
+    begin_[a] = surface.reached().isEmpty() ? 0 : cell_of(surface.reached().min()[a]);
+    end_[a] = surface.reached().isEmpty() ? 0 : cell_of(surface.reached().max()[a]);
+    end_[a] -= offset_[a] > 0 ? 1 : 0;
+  }
 }
 
 template <int dim>
@@ -153,11 +161,13 @@ const BoxVisibility<dim>* VisibilityTable<dim>::around(const Point<dim>& x) cons
   if (surface_.empty())
     return nullptr;
   Index<dim> place;
-  for (int a = 0; a < dim; ++a)
+  bool is_indexed = true;
+  for (int a = 0; a < dim; ++a) {
     place[a] = static_cast<int>(std::floor(x[a] - offset_[a]));
-  const Box<dim> box = box_of(place);
-  if (!surface_.reached().contains(box)) {
-    const std::vector<Image> images = surface_.images_in(box);
+    is_indexed = is_indexed && place[a] >= begin_[a] && place[a] < end_[a];
+  }
+  if (!is_indexed) {
+    const std::vector<Image> images = surface_.images_in(box_of(place));
     if (images.empty())
       return nullptr;
     beyond_.emplace(look_at(place, images));

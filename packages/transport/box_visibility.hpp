@@ -75,6 +75,7 @@ class VisibilityTable {
   const NearbySurface<dim>& surface_;
   SampleKind kind_;
   Point<dim> offset_;               ///< place of the samples in their cells [cells]
+  Index<dim> begin_{}, end_{};      ///< boxes that lie where the surface is indexed
   BoxBins<dim> boxes_;              ///< images of simplices by box, where the surface is indexed
   mutable std::vector<int> known_;  ///< by box that is not empty: its place in `found_`, or -1
   mutable std::vector<BoxVisibility<dim>> found_;

@@ -58,7 +58,7 @@ void NearbySurface<dim>::list_images() {
     const Box<dim> place(reached_.min() - shift, reached_.max() - shift);
     for (int s = 0; s < snapshot_->n_simplices(); ++s) {
       const Box<dim>& bounds = snapshot_->bounds(s);
-      if (!place.intersects(bounds) || lies_beyond(bounds, shift))
+      if (!place.intersects(bounds) || is_left_out(s, shift))
         continue;
       bounds_.push_back(widened<dim>(bounds.translated(shift), 2 * tolerance_));
       images_.push_back(picture(s, shift));
@@ -67,15 +67,19 @@ void NearbySurface<dim>::list_images() {
   });
 }
 
-/// True if an image is outside: what has left through a periodic side is not repeated inside of the
-/// other.
+/// What has left through a periodic side is not repeated inside of the other; and where a solid
+/// reaches across a side the snapshot itself has it at both, so that its simplices are not listed
+/// twice, which would give them twice the weight in the mean of a box.
 template <int dim>
-bool NearbySurface<dim>::lies_beyond(const Box<dim>& bounds, const Point<dim>& shift) const {
+bool NearbySurface<dim>::is_left_out(int simplex, const Point<dim>& shift) const {
+  if (shift.isZero(0))
+    return false;
+  const Box<dim>& bounds = snapshot_->bounds(simplex);
   for (int a = 0; a < dim; ++a)
     if ((shift[a] < 0 && bounds.min()[a] >= lower_[a] + period_[a]) ||
         (shift[a] > 0 && bounds.max()[a] <= lower_[a]))
       return true;
-  return false;
+  return snapshot_->is_shown_at(simplex, shift);
 }
 
 template <int dim>
@@ -202,7 +206,7 @@ bool NearbySurface<dim>::touches(const Box<dim>& box) const {
       std::vector<int> found;
       snapshot_->touching(moved, found);
       return std::any_of(found.begin(), found.end(),
-                         [&](int s) { return !lies_beyond(snapshot_->bounds(s), shift); });
+                         [&](int s) { return !is_left_out(s, shift); });
     });
   };
   if (!reached_.contains(box))
@@ -397,7 +401,7 @@ std::vector<typename NearbySurface<dim>::Image> NearbySurface<dim>::images_in(
     snapshot_->touching(widened<dim>(place, 2 * tolerance_), simplices);
     std::sort(simplices.begin(), simplices.end());
     for (const int s : simplices)
-      if (!lies_beyond(snapshot_->bounds(s), shift)) {
+      if (!is_left_out(s, shift)) {
         const Image image = picture(s, shift);
         if (image.comes_into(box.center(), 0.5 * box.sizes()[0], tolerance_))
           found.push_back(image);

@@ -105,8 +105,8 @@ class NearbySurface {
     int image = -1;
   };
   void list_images();
-  /// True if the image of a simplex with these bounds and this shift lies beyond the domain.
-  bool lies_beyond(const Box<dim>& bounds, const Point<dim>& shift) const;
+  /// True if the image of a simplex with this shift lies beyond the domain, or is that of another.
+  bool is_left_out(int simplex, const Point<dim>& shift) const;
   Image picture(int simplex, const Point<dim>& shift) const;
   void make_bins();
   void make_patches();

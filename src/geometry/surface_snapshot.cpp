@@ -136,6 +136,25 @@ void SurfaceSnapshot<dim>::add_images() {
 }
 
 template <int dim>
+bool SurfaceSnapshot<dim>::is_shown_at(int simplex, const Point<dim>& shift) const {
+  const int solid = solid_of_[simplex];
+  if (solid < 0 || !images_.repeats(solid))
+    return false;
+  Point<dim> place = shift;  // from the first image
+  int end = solids_.back().simplex_end;
+  for (auto image = images_.others.begin(); simplex >= end; ++image) {
+    end += solids_[image->solid].simplex_end - solids_[image->solid].simplex_begin;
+    if (simplex < end)
+      place += image->shift;
+  }
+  const double slack = 1e-9 * images_.period.maxCoeff();
+  return place.isZero(slack) ||
+         std::any_of(images_.others.begin(), images_.others.end(), [&](const auto& image) {
+           return image.solid == solid && (place - image.shift).isZero(slack);
+         });
+}
+
+template <int dim>
 std::vector<Box<dim>> SurfaceSnapshot<dim>::bounds_of_images(int solid) const {
   std::vector<Box<dim>> all{own_bounds(solid)};
   for (const auto& image : images_.others)

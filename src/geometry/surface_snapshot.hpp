@@ -140,6 +140,9 @@ class SurfaceSnapshot {
   const Box<dim>& own_bounds(int solid) const {
     return own_bounds_.empty() ? bounds_of_solid(solid) : own_bounds_[solid];
   }
+  /// True if an image of its solid stands where this simplex would be, moved by `shift` [m], whole
+  /// periods and not zero.
+  bool is_shown_at(int simplex, const Point<dim>& shift) const;
   /// Bounds of each image of a solid.
   std::vector<Box<dim>> bounds_of_images(int solid) const;
   /// Image of x that is nearest to the first image of a solid; x if that is not repeated.

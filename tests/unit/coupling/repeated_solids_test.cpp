@@ -72,6 +72,19 @@ TEST(RepeatedSolids, KnowTheirOwnPlace) {
   }
 }
 
+/// The first image is at .95, another a period before it.
+TEST(RepeatedSolids, AreShownOnceAtEachPlace) {
+  const SurfaceMesh<2> mesh = disc(radius, {3.95, 0.5});
+  RepeatedSolids<2> solids = repeated(mesh);
+  const SurfaceSnapshot<2> snapshot = shown(solids, mesh);
+  const int other = static_cast<int>(mesh.simplices.size());
+  EXPECT_TRUE(snapshot.is_shown_at(0, {-1, 0}));
+  EXPECT_FALSE(snapshot.is_shown_at(0, {1, 0}));
+  EXPECT_TRUE(snapshot.is_shown_at(other, {1, 0}));
+  EXPECT_FALSE(snapshot.is_shown_at(other, {-1, 0}));
+  EXPECT_FALSE(snapshot.is_shown_at(other, {2, 0}));
+}
+
 TEST(RepeatedSolids, HaveTheImagesOfAnEarlierSnapshot) {
   const SurfaceMesh<2> at_side = disc(radius, {0.95, 0.5}), beyond = disc(radius, {1.3, 0.5});
   RepeatedSolids<2> solids = repeated(at_side);
