@@ -67,9 +67,9 @@ void NearbySurface<dim>::list_images() {
   });
 }
 
-/// What has left through a periodic side is not repeated inside of the other; and where a solid
-/// reaches across a side the snapshot itself has it at both, so that its simplices are not listed
-/// twice, which would give them twice the weight in the mean of a box.
+/// Simplices that have left through a periodic side are not repeated inside of the other; and where
+/// a solid reaches across a side the snapshot itself has it at both, so that its simplices are not
+/// listed twice, which would give them twice the weight in the mean of a box.
 template <int dim>
 bool NearbySurface<dim>::is_left_out(int simplex, const Point<dim>& shift) const {
   if (shift.isZero(0))
