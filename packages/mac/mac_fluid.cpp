@@ -57,6 +57,8 @@ const FluidGeometry<dim>& MacFluid<dim>::freeze(const Surface& surface,
   check_input(!liquid_ || has_begun_ || geometry.volume > 0 || flow_.liquid->starts_empty(),
               "Of what is in \"Liquid\", nothing is in the domain and outside of solids.");
   has_begun_ = true;
+  if (liquid_)
+    balance_waves(geometry, flow_.liquid->interface().distance(), flow_.time, flow_.domain);
   viscosity_.renew();
   flow_.set_prescribed(flow_.time, flow_.velocity);
   flow_.set_prescribed(flow_.time, flow_.prediction);
@@ -266,6 +268,8 @@ template <int dim>
 ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   flow_.time = time + dt;
   flow_.last_step = dt;
+  if (liquid_)
+    balance_waves(flow_.geometry, flow_.liquid->interface().distance(), flow_.time, flow_.domain);
   flow_.set_prescribed(flow_.time, flow_.prediction);
   ForceImpulse<dim> given;
   const MacGeometry<dim>& geometry = flow_.geometry;

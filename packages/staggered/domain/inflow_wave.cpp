@@ -9,6 +9,20 @@
 
 namespace lockstep {
 
+namespace {
+/// Calls f(place, weight) for Gauss and Legendre's points of the interval from 0 to 1: exact for
+/// polynomials of order 9.
+template <typename Function>
+void for_each_gauss_point(const Function& f) {
+  constexpr double points[] = {-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
+                               0.906179845938664};
+  constexpr double weights[] = {0.236926885056189, 0.478628670499366, 0.568888888888889,
+                                0.478628670499366, 0.236926885056189};
+  for (int i = 0; i < 5; ++i)
+    f(0.5 + 0.5 * points[i], 0.5 * weights[i]);
+}
+}  // namespace
+
 template <int dim>
 Point<dim> InflowWave<dim>::velocity_at(const Point<dim>& x, double time) const {
   const double top = theory->top(time, share(time));
@@ -31,25 +45,43 @@ Point<dim> InflowWave<dim>::mean_velocity(const Box<dim>& box, double time) cons
     sum.along += length * motion.along;
     sum.upward += length * motion.upward;
   };
-  // Gauss and Legendre's points and weights: exact for polynomials of order 9.
-  constexpr double points[] = {-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
-                               0.906179845938664};
-  constexpr double weights[] = {0.236926885056189, 0.478628670499366, 0.568888888888889,
-                                0.478628670499366, 0.236926885056189};
   const double begin = std::clamp(lower, bottom, top), end = std::clamp(upper, bottom, top);
-  for (int i = 0; i < 5; ++i)
-    add(weights[i] * (end - begin) / 2, (begin + end) / 2 + points[i] * (end - begin) / 2);
+  for_each_gauss_point([&](double place, double weight) {
+    add(weight * (end - begin), begin + place * (end - begin));
+  });
   add(std::max(upper, top) - std::max(lower, top), top);
   add(std::min(upper, bottom) - std::min(lower, bottom), bottom);
-  return velocity(sum) / (upper - lower);
+  sum.along /= upper - lower;
+  sum.upward /= upper - lower;
+  return velocity(sum);
+}
+
+template <int dim>
+double InflowWave<dim>::flow_below_top(double time, double share) const {
+  const double height = depth + std::max(theory->top(time, share), -depth);
+  double sum = 0;
+  for_each_gauss_point([&](double place, double weight) {
+    sum += weight * theory->motion(height * place - depth, time, share).along;
+  });
+  return height * sum;
+}
+
+template <int dim>
+double InflowWave<dim>::flow(double time) const {
+  double mean = 0;
+  constexpr int n_times = 16;
+  for (int i = 0; period > 0 && i < n_times; ++i)
+    mean += flow_below_top(time + period * i / n_times, share(time)) / n_times;
+  return flow_below_top(time, share(time)) - mean;
 }
 
 void declare_inflow_wave(ParameterList& side) {
   ParameterList& wave = declare_optional_list(
       side, "Wave",
       "An inflow sends waves into a tank of liquid: at the side the water moves as below a wave "
-      "that goes inwards, less that wave's mean flow. The still water is the \"level\" in "
-      "\"Liquid\", down to the side of the domain below it. They begin with a crest.");
+      "that goes inwards, and as much comes in as that wave brings, on the mean nothing, "
+      "whatever waves come back. The still water is the \"level\" in \"Liquid\", down to the "
+      "side of the domain below it. They begin with a crest.");
   declare_choice(
       wave, "Type", wave_theories().front(), wave_theories(),
       "Airy: linear, for low waves; Stokes 2 and Stokes 5: to the second and fifth order "
@@ -148,9 +180,9 @@ std::optional<InflowWave<dim>> read_inflow_wave(const ParameterList& side,
               "{:g} m, measured against gravity.",
               where, wave.level, bottom, top);
   wave.depth = wave.level - bottom;
-  const double period = list.isParameter("Frequency") ? 1 / list.get<double>("Frequency") : 0;
-  wave.theory =
-      make_wave(theory, {list.get<double>("Height"), period, wave.depth, gravity.norm()}, where);
+  wave.period = list.isParameter("Frequency") ? 1 / list.get<double>("Frequency") : 0;
+  wave.theory = make_wave(
+      theory, {list.get<double>("Height"), wave.period, wave.depth, gravity.norm()}, where);
   return wave;
 }
 

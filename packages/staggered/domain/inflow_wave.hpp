@@ -11,7 +11,9 @@
 namespace lockstep {
 
 /// A wave that a side of the domain sends into a tank: at the side the water moves as below a wave
-/// that goes inwards and carries no water, so that the tank neither fills nor empties.
+/// that goes inwards and carries no water. A wave that comes back makes the surface higher where the
+/// water goes in than where it goes out, if energy goes in; the `stream` takes back what that brings,
+/// so that the tank neither fills nor empties.
 template <int dim>
 struct InflowWave {
   std::shared_ptr<const WaveTheory> theory;
@@ -20,11 +22,18 @@ struct InflowWave {
   Point<dim> up = Point<dim>::Zero();  ///< against gravity; along an axis
   Point<dim> inward = Point<dim>::Zero();  ///< normal of the side
   double ramp_time = 0;  ///< the height grows linearly from 0 during this time [s]; 0: at once
+  double period = 0;     ///< [s]; 0: a solitary wave
+  /// Velocity inwards, alike at all heights, that is added to the wave's [m/s]: it makes what comes
+  /// in below the surface that is there, waves that come back included, `flow`.
+  double stream = 0;
 
   /// Velocity at a point of the side [m/s]. Above the wave it is that at its surface.
   Point<dim> velocity_at(const Point<dim>& x, double time) const;
   /// The mean over a box that reaches over some height.
   Point<dim> mean_velocity(const Box<dim>& box, double time) const;
+  /// Volume that the wave brings in a time, by the width of the side [m^2/s]; its mean over a period
+  /// is 0.
+  double flow(double time) const;
 
  private:
   /// The part of the height that has grown.
@@ -32,8 +41,10 @@ struct InflowWave {
     return ramp_time > 0 ? std::clamp(time / ramp_time, 0.0, 1.0) : 1;
   }
   Point<dim> velocity(const WaveMotion& motion) const {
-    return motion.along * inward + motion.upward * up;
+    return (motion.along + stream) * inward + motion.upward * up;
   }
+  /// Integral of the velocity inwards over the height, without the stream [m^2/s].
+  double flow_below_top(double time, double share) const;
 };
 
 /// Declares the list "Wave" of a side.

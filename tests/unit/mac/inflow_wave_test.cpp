@@ -47,6 +47,18 @@ double mean_flow(const InflowWave<2>& w, double amplitude) {
   return sum;
 }
 
+/// Greatest and mean of `flow` over a period [m^2/s].
+std::pair<double, double> flows(const InflowWave<2>& w) {
+  constexpr int n = 400;
+  double greatest = 0, mean = 0;
+  for (int i = 0; i < n; ++i) {
+    const double flow = w.flow((i + 0.5) / n * period);
+    greatest = std::max(greatest, flow);
+    mean += flow / n;
+  }
+  return {greatest, mean};
+}
+
 /// Largest normal velocity at the surface over the speed, and spread of the head over g H, in the
 /// frame of the wave.
 std::pair<double, double> misfit(const WaveTheory& wave, double height) {
@@ -91,6 +103,21 @@ TEST(InflowWave, MovesAsBelowAWave) {
       EXPECT_NEAR(v[1], scale * std::sinh(k * (y + 0.2)) * std::cos(omega * t), 1e-13);
     }
     EXPECT_EQ(w.velocity_at({0, 0.4}, t), w.velocity_at({0, 0.3}, t));
+  }
+}
+
+/// What comes in lifts the surface: q = c eta in linear theory.
+TEST(InflowWave, BringsWhatItsCrestsHold) {
+  for (const char* name : {"Airy", "Stokes 2", "Stokes 5"}) {
+    InflowWave<2> w = wave(0.02, name);
+    w.period = period;
+    const auto [greatest, mean] = flows(w);
+    EXPECT_NEAR(mean, 0, 1e-6 * greatest) << name;
+    EXPECT_NEAR(greatest / (w.theory->speed() * 0.01), 1, name[0] == 'A' ? 1e-4 : 0.04) << name;
+    const double without = w.velocity_at({0, 0.1}, 0.3)[0], flow = w.flow(0.3);
+    w.stream = 0.5;
+    EXPECT_NEAR(w.velocity_at({0, 0.1}, 0.3)[0] - without, 0.5, 1e-15);
+    EXPECT_EQ(w.flow(0.3), flow);
   }
 }
 
