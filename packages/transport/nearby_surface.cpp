@@ -205,8 +205,7 @@ bool NearbySurface<dim>::touches(const Box<dim>& box) const {
         return snapshot_->touches(moved);
       std::vector<int> found;
       snapshot_->touching(moved, found);
-      return std::any_of(found.begin(), found.end(),
-                         [&](int s) { return !is_left_out(s, shift); });
+      return std::any_of(found.begin(), found.end(), [&](int s) { return !is_left_out(s, shift); });
     });
   };
   if (!reached_.contains(box))

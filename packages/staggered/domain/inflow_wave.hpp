@@ -11,9 +11,9 @@
 namespace lockstep {
 
 /// A wave that a side of the domain sends into a tank: at the side the water moves as below a wave
-/// that goes inwards and carries no water. A wave that comes back makes the surface higher where the
-/// water goes in than where it goes out, if energy goes in; the `stream` takes back what that brings,
-/// so that the tank neither fills nor empties.
+/// that goes inwards and carries no water. A wave that comes back makes the surface higher where
+/// the water goes in than where it goes out, if energy goes in; the `stream` takes back what that
+/// brings, so that the tank neither fills nor empties.
 template <int dim>
 struct InflowWave {
   std::shared_ptr<const WaveTheory> theory;
@@ -31,8 +31,8 @@ struct InflowWave {
   Point<dim> velocity_at(const Point<dim>& x, double time) const;
   /// The mean over a box that reaches over some height.
   Point<dim> mean_velocity(const Box<dim>& box, double time) const;
-  /// Volume that the wave brings in a time, by the width of the side [m^2/s]; its mean over a period
-  /// is 0.
+  /// Volume that the wave brings in a time, by the width of the side [m^2/s]; its mean over a
+  /// period is 0.
   double flow(double time) const;
 
  private:

@@ -106,7 +106,7 @@ TEST(InflowWave, MovesAsBelowAWave) {
   }
 }
 
-/// What comes in lifts the surface: q = c eta in linear theory.
+/// Water that comes in lifts the surface: q = c eta in linear theory.
 TEST(InflowWave, BringsWhatItsCrestsHold) {
   for (const char* name : {"Airy", "Stokes 2", "Stokes 5"}) {
     InflowWave<2> w = wave(0.02, name);
