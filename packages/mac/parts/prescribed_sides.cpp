@@ -70,35 +70,53 @@ double loss_of_inflow(const FaceProperties& face, double inwards, double along_2
 }  // namespace
 
 namespace {
+struct FaceSide {
+  int axis, end;
+};
+
 /// The part of the cell beside a face that is liquid, with that of the cell above if its centre is
 /// in the air [cells]: where the surface crosses the line of their centres.
 double wet_height(double phi, double spacing) {
   return phi > -spacing ? 0.5 - phi / spacing : 1;
 }
 
-/// Area below the surface of an inflow, and what comes in through it in a time.
+/// Signed distance of a cell's centre from the surface that goes on for the lead [m].
+template <int dim>
+double height_over(const TiledGrid<dim>& grid, const RisingSurface<dim>& surface,
+                   const Point<dim>& up, int cell) {
+  double rise = 0;  // [m/s]
+  for (int a = 0; a < dim; ++a) {
+    const int above = grid.neighbor(cell, a, 1);
+    const double lower = surface.velocity[a][cell];
+    rise += 0.5 * up[a] * (lower + (above < 0 ? lower : surface.velocity[a][above]));
+  }
+  return surface.phi[cell] - surface.lead * rise;
+}
+
+/// Area below the surface at a side that sends waves, and what comes in through it in a time.
 template <int dim>
 std::pair<double, double> wet_inflow(const MacDomain<dim>& domain, const MacGeometry<dim>& geometry,
-                                     const CellField& phi, double time, int axis, int end) {
+                                     const RisingSurface<dim>& surface, double time, FaceSide at) {
+  const BoundarySide<dim>& side = domain.boundary.side(at.axis, at.end);
   double area = 0, into = 0;  // [m^(dim-1)], [m^dim/s]
-  for (const auto& [face_axis, cell] : geometry.prescribed) {
+  for (const auto& [axis, cell] : geometry.prescribed) {
     const bool is_upper = geometry.state.cells[cell] == CellState::outside;
-    if (face_axis != axis || is_upper != (end == 1))
+    if (axis != at.axis || is_upper != (at.end == 1))
       continue;
     const int fluid = is_upper ? domain.grid.neighbor(cell, axis, 0) : cell;
+    const double phi = height_over<dim>(domain.grid, surface, side.wave->up, fluid);
     const double wet = geometry.face_table.area() * geometry.flux_fraction(axis, cell) *
-                       wet_height(phi[fluid], domain.spacing());
-    const Box<dim> face = domain.face_box(axis, cell);
+                       wet_height(phi, domain.spacing());
     area += wet;
-    into += wet * domain.boundary.side(axis, end).mean_velocity(axis, face, time)[axis];
+    into += wet * side.mean_velocity(axis, domain.face_box(axis, cell), time)[axis];
   }
   sum_over_ranks(domain.grid.comm(), area, into);
-  return {area, end == 0 ? into : -into};
+  return {area, at.end == 0 ? into : -into};
 }
 }  // namespace
 
 template <int dim>
-void balance_waves(const MacGeometry<dim>& geometry, const CellField& phi, double time,
+void balance_waves(const MacGeometry<dim>& geometry, const RisingSurface<dim>& surface, double time,
                    MacDomain<dim>& domain) {
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
@@ -106,7 +124,7 @@ void balance_waves(const MacGeometry<dim>& geometry, const CellField& phi, doubl
       if (!wave)
         continue;
       wave->stream = 0;
-      const auto [area, into] = wet_inflow(domain, geometry, phi, time, axis, end);
+      const auto [area, into] = wet_inflow<dim>(domain, geometry, surface, time, {axis, end});
       double width = 1;  // [m]; in the plane that of a slice
       for (int a = 0; a < dim; ++a)
         if (a != axis && wave->up[a] == 0)
@@ -188,8 +206,10 @@ std::vector<std::pair<std::string, std::string>> notes_of_inflows(
   return notes;
 }
 
-template void balance_waves<2>(const MacGeometry<2>&, const CellField&, double, MacDomain<2>&);
-template void balance_waves<3>(const MacGeometry<3>&, const CellField&, double, MacDomain<3>&);
+template void balance_waves<2>(const MacGeometry<2>&, const RisingSurface<2>&, double,
+                               MacDomain<2>&);
+template void balance_waves<3>(const MacGeometry<3>&, const RisingSurface<3>&, double,
+                               MacDomain<3>&);
 template Momentum<2> push_of_pressures<2>(const MacDomain<2>&, const MacGeometry<2>&, double,
                                           double, const FaceField<2>&, FaceField<2>&);
 template Momentum<3> push_of_pressures<3>(const MacDomain<3>&, const MacGeometry<3>&, double,

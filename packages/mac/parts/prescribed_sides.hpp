@@ -13,10 +13,17 @@ namespace lockstep {
 template <int dim>
 std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<dim>& domain,
                                             const MacGeometry<dim>& geometry, double time);
-/// Sets the streams of sides that send waves, to bring in as much below the surface at `time` as
-/// their waves do. `phi`: signed distance to the surface, negative in the liquid [m]. Collective.
+/// The surface of a liquid, as it comes to stand at the sides.
 template <int dim>
-void balance_waves(const MacGeometry<dim>& geometry, const CellField& phi, double time,
+struct RisingSurface {
+  const CellField& phi;            ///< signed distance, negative in the liquid [m]
+  const FaceField<dim>& velocity;  ///< [m/s]
+  double lead = 0;                 ///< time by which it goes on with the velocity [s]
+};
+/// Sets the streams of sides that send waves, to bring in as much below the surface at `time` as
+/// their waves do. Collective.
+template <int dim>
+void balance_waves(const MacGeometry<dim>& geometry, const RisingSurface<dim>& surface, double time,
                    MacDomain<dim>& domain);
 /// Pushes the owned free faces of open sides with a pressure by it at `time` over `dt` [s], as if
 /// it were that of cells beyond; the pressure that is solved for is 0 there. What comes in has
