@@ -98,9 +98,9 @@ void declare_deformable_geometry(ParameterList& body) {
                : "Of a spindle, one after the other [m]: place along x, ascending, half height "
                  "along y and half width along z of an ellipse; straight between them.");
   declare_optional<std::string>(list, "File",
-                                "Mesh: .msh of Gmsh (version 2.2 or 4.1) or legacy .vtk, both "
-                                "ASCII; relative to the folder of "
-                                "the scene.");
+                                "Mesh: .msh of Gmsh (version 2.2 or 4.1, as \"gmsh -3 hull.step -o "
+                                "hull.msh\" writes it) or legacy .vtk, both ASCII; relative to the "
+                                "folder of the scene.");
   declare_mesh_repair(list);
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest step of the lattice of a generated mesh [m]; default one grid "

@@ -72,8 +72,10 @@ void declare_geometry(ParameterList& body) {
   set_length(list, "Size", dim);
   declare_optional<std::string>(list, "Normal", "Axis that a plate is normal to.");
   set_choices(list, "Normal", axes);
-  declare_optional<std::string>(
-      list, "File", "Surface mesh: .obj, .off or (3D) .stl; relative to the folder of the scene.");
+  declare_optional<std::string>(list, "File",
+                                "Surface mesh: .obj, .off or (3D) .stl; relative to the folder of "
+                                "the scene. Of PLY, glTF and DAE \"assimp "
+                                "export hull.dae hull.stl\" makes one.");
   declare_mesh_repair(list);
   for (const char* size : {"Radius", "Length", "Tube Radius"})
     set_positive(list, size);

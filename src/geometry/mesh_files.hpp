@@ -15,4 +15,9 @@ SurfaceMesh<dim> read_surface(const std::string& file, MeshNames& names);
 template <int dim>
 SurfaceMesh<dim> read_surface(const std::string& file);
 
+/// Returns the extension of a file with its point, in lower case.
+std::string lower_extension(const std::string& file);
+/// Tells whether a file holds curved shapes, which Gmsh makes meshes of: .geo, .step, .iges, .brep.
+bool is_shape_file(const std::string& file);
+
 }  // namespace lockstep

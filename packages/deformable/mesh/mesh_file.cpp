@@ -10,16 +10,32 @@
 namespace lockstep {
 
 namespace {
-std::string extension_of(const std::string& file) {
-  return std::filesystem::path(file).extension().string();
+/// Returns the end of a message about a file without tetrahedra (2D: triangles): how Gmsh makes
+/// them, nothing if it cannot.
+template <int dim>
+std::string how_gmsh_meshes(const std::string& file, const std::string& extension) {
+  const std::filesystem::path name = std::filesystem::path(file).filename();
+  const std::string from = name.string(), stem = name.stem().string();
+  if (is_shape_file(file))
+    return fmt::format(", which \"gmsh -{} {} -o {}.msh\" makes", dim, from, stem);
+  const bool is_stl = extension == ".stl";
+  if (dim == 2 || !(is_stl || extension == ".obj" || extension == ".off" || extension == ".ply"))
+    return "";
+  const std::string conversion =
+      is_stl ? "" : fmt::format(", after \"assimp export {} {}.stl\",", from, stem);
+  return fmt::format(
+      ", which{} \"gmsh -3 {}.geo -o {}.msh\" makes of a file {}.geo with the line 'Merge "
+      "\"{}.stl\"; Surface Loop(1) = {{1}}; Volume(1) = {{1}};'",
+      conversion, stem, stem, stem, stem);
 }
 }  // namespace
 
 template <int dim>
 VolumeMesh<dim> read_volume_mesh(const std::string& file, MeshNames& names) {
-  const std::string extension = extension_of(file);
+  const std::string extension = lower_extension(file);
   check_input(extension == ".msh" || extension == ".vtk",
-              "{}: unknown kind of mesh file '{}'; use .msh or .vtk.", file, extension);
+              "{}: unknown kind of mesh file '{}'; use .vtk or .msh{}.", file, extension,
+              how_gmsh_meshes<dim>(file, extension));
   auto read = extension == ".msh" ? read_gmsh<dim, dim + 1>(file) : read_vtk<dim, dim + 1>(file);
   VolumeMesh<dim> mesh;
   mesh.vertices = std::move(read.vertices);
@@ -30,7 +46,7 @@ VolumeMesh<dim> read_volume_mesh(const std::string& file, MeshNames& names) {
 
 template <int dim>
 SurfaceMesh<dim> read_shell_mesh(const std::string& file, MeshNames& names) {
-  const std::string extension = extension_of(file);
+  const std::string extension = lower_extension(file);
   if (extension != ".msh" && extension != ".vtk")
     return read_surface<dim>(file, names);
   auto read = extension == ".msh" ? read_gmsh<dim, dim>(file) : read_vtk<dim, dim>(file);

@@ -197,6 +197,23 @@ TEST_F(GmshFile, ErrorsNameTheLine) {
   EXPECT_THAT(test::error([&] { read_volume<2>(write(broken)); }), HasSubstr("line 27"));
 }
 
+TEST(MeshFiles, MessagesNameCommandsOfGmsh) {
+  const auto refusal = [](const std::string& file) {
+    return test::error([&] { read_volume<3>(file); });
+  };
+  EXPECT_THAT(refusal("parts/hull.STEP"), AllOf(HasSubstr("parts/hull.STEP: unknown kind"),
+                                                HasSubstr("\"gmsh -3 hull.STEP -o hull.msh\"")));
+  EXPECT_THAT(test::error([&] { read_volume<2>("disc.geo"); }),
+              HasSubstr("\"gmsh -2 disc.geo -o disc.msh\""));
+  EXPECT_THAT(refusal("hull.stl"),
+              AllOf(HasSubstr("\"gmsh -3 hull.geo -o hull.msh\" makes of a file hull.geo"),
+                    HasSubstr("'Merge \"hull.stl\"; Surface Loop(1) = {1}; Volume(1) = {1};'"),
+                    Not(HasSubstr("assimp"))));
+  EXPECT_THAT(refusal("hull.obj"),
+              AllOf(HasSubstr("after \"assimp export hull.obj hull.stl\""), HasSubstr("hull.geo")));
+  EXPECT_THAT(refusal("hull.txt"), testing::EndsWith("'.txt'; use .vtk or .msh."));
+}
+
 const std::string vtk_header = "# vtk DataFile Version 3.0\na title\nASCII\n";
 const std::string vtk_points =
     "DATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0\n1 1 0 0 1 0 9 9 0\n";

@@ -122,8 +122,20 @@ TEST_F(SurfaceFiles, ErrorsNameFileAndLine) {
   EXPECT_THAT(error_of<3>("a.stl", "solid\nfacet normal 0 0 1\nvertex 0 0 0\n"),
               AllOf(HasSubstr("line 3"), HasSubstr("outer loop")));
   EXPECT_THAT(error_of<2>("a.stl", "solid\n"), HasSubstr("segments"));
-  EXPECT_THAT(error_of<3>("a.ply", "ply\n"), HasSubstr("'.ply'"));
   EXPECT_THROW(read_surface<3>((folder_ / "missing.obj").string()), InputError);
+}
+
+TEST_F(SurfaceFiles, MessagesNameCommandsThatMakeStl) {
+  for (const char* kind : {"ply", "gltf", "glb", "dae"}) {
+    const std::string name = std::string("a.") + kind;
+    EXPECT_THAT(error_of<3>(name, "\n"),
+                AllOf(HasSubstr(std::string("'.") + kind + "'; use .obj, .off or .stl"),
+                      HasSubstr("\"assimp export " + name + " a.stl\"")));
+  }
+  EXPECT_THAT(error_of<3>("a.STEP", "\n"), HasSubstr("\"gmsh -2 a.STEP -o a.stl\""));
+  EXPECT_THAT(error_of<3>("a.msh", "\n"), HasSubstr("\"gmsh -0 a.msh -o a.stl\""));
+  EXPECT_THAT(error_of<3>("a.txt", "\n"), testing::EndsWith("use .obj, .off or .stl."));
+  EXPECT_THAT(error_of<2>("a.ply", "\n"), testing::EndsWith("use .obj, .off or (3D) .stl."));
 }
 
 TEST_F(SurfaceFiles, NumbersMustBeFiniteAndIndicesSmall) {
