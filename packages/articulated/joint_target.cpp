@@ -89,8 +89,11 @@ Eigen::VectorXd per_coordinate(const ParameterList& list, const std::string& nam
 }
 
 void declare_target(ParameterList& joint, int n) {
-  ParameterList constant, table;
+  ParameterList constant, steady, table;
   declare_per_coordinate(constant, "Value", n, 0, "The coordinates [rad, m]; 0 at the start.");
+  declare_per_coordinate(steady, "Value", n, 0, "The coordinates at time 0 [rad, m].");
+  declare_per_coordinate(steady, "Velocity", n, 0,
+                         "Their rates [rad/s, m/s]: the target is value plus velocity times time.");
   declare_required<ParameterArray<double>>(table, "Times", "Ascending times [s], two or more.");
   declare_required<ParameterArray<double>>(
       table, "Values", "Coordinates at each time, straight lines between them [rad, m].");
@@ -104,6 +107,7 @@ void declare_target(ParameterList& joint, int n) {
                         "Target of the joint's coordinates: displacements along its axes, then "
                         "angles; all 0 at the start.",
                         {{"constant", "Stays.", constant},
+                         {"constant rate", "Goes on evenly: a shaft that turns.", steady},
                          {"sinusoid", "Swings.", swing_schema(n)},
                          {"table", "Follows a table, and stays before and after.", table},
                          {"wave",
@@ -123,6 +127,11 @@ JointTarget read_target(const ParameterList& joint, int n,
   if (type == "constant") {
     const Eigen::VectorXd value = per_coordinate(list, "Value", n);
     return [value, n](double) { return TargetValue{value, Eigen::VectorXd::Zero(n)}; };
+  }
+  if (type == "constant rate") {
+    const Eigen::VectorXd value = per_coordinate(list, "Value", n),
+                          rate = per_coordinate(list, "Velocity", n);
+    return [value, rate](double time) { return TargetValue{value + time * rate, rate}; };
   }
   double phase = list.get<double>("Phase");
   if (type == "wave")

@@ -97,6 +97,14 @@ class Control(unittest.TestCase):
         self.assertLess(defects[1], .02)
         self.assertGreater(math.log2(defects[0] / defects[1]), 1.5)
 
+    def test_a_shaft_turns_at_a_constant_rate(self):
+        """Three turns and more, after the motor has set the arm going."""
+        rows = joints_of(arm(.05, 3., Control="prescribed", Target={"Type": "constant rate", "Velocity": 7.}))["H"]
+        for row in rows:
+            self.assertAlmostEqual(row["q"], 7 * row["time"], delta=1e-10)
+            self.assertAlmostEqual(row["rate"], 7, delta=1e-10)
+        self.assertLess(max(abs(row["torque"]) for row in rows[1:]), 1e-9)
+
     def test_a_free_pair_keeps_its_momentum_whatever_its_joint_does(self):
         solids = {"A": unseen_box((0., 0.), 0.), "B": unseen_box((1., 0.), 0.)}
         swing = {"Type": "sinusoid", "Amplitude": .5, "Frequency": .5}
