@@ -110,6 +110,35 @@ void add_elements(const ParameterList& list, const SurfaceMesh<dim>& mesh,
     body.elements.push_back(surface_tension_elements<dim>(mesh, tension));
 }
 
+/// Declares what the mass of a sheet is. Its "Thickness" is that of its stiffness, too.
+void declare_sheet_mass(ParameterList& list) {
+  declare_optional<double>(
+      list, "Surface Density",
+      "Mass per area as meshed [kg/m^2] (2D: [kg/m]); \"Density\" may take its place. 0: no mass "
+      "but that of the fluid lumped on it; then it must be fully implicit.");
+  set_at_least(list, "Surface Density", 0);
+  declare_optional<double>(list, "Density",
+                           "Density of the material [kg/m^3] (2D: [kg/m^2]): the mass per area is "
+                           "\"Thickness\" times this.");
+  set_positive(list, "Density");
+}
+
+/// Returns the mass per area as meshed [kg/m^2] (2D: [kg/m]).
+double surface_density(const ParameterList& list, const std::string& name) {
+  const bool direct = list.isParameter("Surface Density"), by_volume = list.isParameter("Density");
+  check_input(!(direct && by_volume),
+              "The cloth \"{}\" has both \"Surface Density\" and \"Density\"; leave out one: "
+              "\"Thickness\" times \"Density\" takes the place of \"Surface Density\".",
+              name);
+  check_input(
+      direct || by_volume,
+      "The cloth \"{}\" has no mass; give \"Surface Density\", or the \"Density\" of what it "
+      "is made of.",
+      name);
+  return direct ? list.get<double>("Surface Density")
+                : list.get<double>("Thickness") * list.get<double>("Density");
+}
+
 }  // namespace
 
 template <int dim>
@@ -123,10 +152,7 @@ ParameterList cloth_parameters() {
   declare_required_positive(list, "Thickness",
                             "Thickness of the sheet [m]: membrane stiffness goes with it, bending "
                             "stiffness with its cube.");
-  declare_required<double>(list, "Surface Density",
-                           "Mass per area as meshed [kg/m^2] (2D: [kg/m]). 0: no mass but that of "
-                           "the fluid lumped on it; then it must be fully implicit.");
-  set_at_least(list, "Surface Density", 0);
+  declare_sheet_mass(list);
   ParameterList elements("finite element"), springs("mass-spring");
   declare_typed_sublist(
       list, "Membrane", "Resistance to stretch and shear.",
@@ -156,7 +182,7 @@ DeformableBody<dim> read_cloth(const std::string& name, const ParameterList& lis
   DeformableBody<dim> body;
   body.name = name;
   body.closed = false;
-  body.density = list.get<double>("Surface Density");
+  body.density = surface_density(list, name);
   add_elements<dim>(list, mesh, body);
   if (const double limit = list.get<double>("Stretch Limit"); limit > 0) {
     body.limited_edges = limited_edges<dim>(mesh.vertices, mesh.simplices,

@@ -10,24 +10,54 @@ namespace lockstep {
 
 namespace {
 
+/// Returns whether a list gives the density of a volume; it may not give that of a shell.
+template <int dim>
+bool has_volume_density(const ParameterList& list, const RigidBodyConstants<dim>& body) {
+  for (const char* other : {"Surface Density", "Thickness"}) {
+    check_input(!list.isParameter(other),
+                "The solid \"{}\" is a volume, so it has no \"{}\"; give \"Density\" or \"Mass\".",
+                body.name, other);
+  }
+  return list.isParameter("Density");
+}
+
+/// Returns whether a list gives the mass of a shell per area: itself, or by its thickness and the
+/// density of what it is made of.
+template <int dim>
+bool has_shell_density(const ParameterList& list, const RigidBodyConstants<dim>& body) {
+  const bool direct = list.isParameter("Surface Density"), density = list.isParameter("Density"),
+             thickness = list.isParameter("Thickness");
+  check_input(
+      !direct || !(density || thickness),
+      "The solid \"{}\" has both \"Surface Density\" and \"{}\"; leave out one: \"Thickness\" "
+      "times \"Density\" takes the place of \"Surface Density\".",
+      body.name, density ? "Density" : "Thickness");
+  check_input(density == thickness,
+              "The solid \"{}\" is a thin shell with a \"{}\", but has no \"{}\"; give both, "
+              "\"Surface Density\" or \"Mass\".",
+              body.name, density ? "Density" : "Thickness", density ? "Thickness" : "Density");
+  return direct || density;
+}
+
 /// Density per unit of measure (volume or surface), the mean one if the mass is given; 0 for a
 /// prescribed body that names none.
 template <int dim>
 double read_density(const ParameterList& list, const RigidBodyConstants<dim>& body,
                     double measure) {
-  const std::string wanted = body.closed ? "Density" : "Surface Density";
-  const std::string other = body.closed ? "Surface Density" : "Density";
-  check_input(!list.isParameter(other),
-              "The solid \"{}\" is a {}, so it has no \"{}\"; give \"{}\" or \"Mass\".", body.name,
-              body.closed ? "volume" : "thin shell", other, wanted);
-  const bool by_density = list.isParameter(wanted), by_mass = list.isParameter("Mass");
+  const bool by_density =
+      body.closed ? has_volume_density(list, body) : has_shell_density(list, body);
+  const bool by_mass = list.isParameter("Mass"), by_volume = list.isParameter("Density");
+  const std::string wanted = body.closed || by_volume ? "Density" : "Surface Density";
   check_input(!(by_density && by_mass),
               "The solid \"{}\" has both \"{}\" and \"Mass\"; leave out one.", body.name, wanted);
   check_input(by_density || by_mass || body.script,
               "The solid \"{}\" has no mass; give \"{}\" or \"Mass\".", body.name, wanted);
   if (by_mass)
     return list.get<double>("Mass") / measure;
-  return by_density ? list.get<double>(wanted) : 0;
+  if (!by_density)
+    return 0;
+  const double density = list.get<double>(wanted);
+  return by_volume && !body.closed ? density * list.get<double>("Thickness") : density;
 }
 
 /// A mass that is not spread evenly has nothing to do with the density of a volume.
@@ -86,10 +116,14 @@ template <int dim>
 void declare_mass(ParameterList& body) {
   declare_optional<double>(
       body, "Density",
-      "Density of a volume [kg/m^3] (2D: [kg/m^2]). A dynamic body needs one of density and mass.");
-  declare_optional<double>(
-      body, "Surface Density",
-      "Mass per area of a thin shell [kg/m^2] (2D: [kg/m]), instead of \"Density\".");
+      "Density of a volume, or of what a thin shell is made of [kg/m^3] (2D: [kg/m^2]). A dynamic "
+      "body needs one of density and mass.");
+  declare_optional<double>(body, "Surface Density",
+                           "Mass per area of a thin shell [kg/m^2] (2D: [kg/m]).");
+  declare_optional<double>(body, "Thickness",
+                           "Thickness of a thin shell [m], to which the fluid is blind: "
+                           "\"Thickness\" times \"Density\" is its mass per area, in place of "
+                           "\"Surface Density\".");
   declare_optional<double>(body, "Mass",
                            "Mass [kg] (2D: per unit depth), spread evenly but for what \"Center of "
                            "Mass\" and \"Inertia\" say.");
@@ -111,7 +145,7 @@ void declare_mass(ParameterList& body) {
         "body, or the tensor in them, xx, yy, zz, xy, xz, yz (off the diagonal minus the integral "
         "of x y). Default: that of a mass spread evenly, about its own centre.");
   }
-  for (const char* name : {"Density", "Surface Density", "Mass"})
+  for (const char* name : {"Density", "Surface Density", "Thickness", "Mass"})
     set_positive(body, name);
 }
 

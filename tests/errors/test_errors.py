@@ -272,6 +272,8 @@ CASES = [
     Case("a body with two masses", "leave out one", change=(DENSITY, DENSITY + value("Mass", "double", "1"))),
     Case("a volume with a surface density", "has no \"Surface Density\"",
          change=(DENSITY, value("Surface Density", "double", "1"))),
+    Case("a volume with a thickness", ["\"Ball\"", "has no \"Thickness\""],
+         change=(DENSITY, DENSITY + value("Thickness", "double", "1"))),
     Case("a negative radius", ["\"Radius\" is -0.3", "greater than 0"],
          change=(RADIUS, value("Radius", "double", "-0.3"))),
     Case("a ball without radius", "needs \"Radius\"", change=(RADIUS, "")),

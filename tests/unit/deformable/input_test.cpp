@@ -88,6 +88,17 @@ TEST(Input, Cloth) {
   EXPECT_FALSE(made.closed);
 }
 
+TEST(Input, MassOfClothByItsThickness) {
+  const std::string flag = geometry("sheet", numbers("Size", "1, 0, 2") + text("Normal", "y")) +
+                           number("Young&apos;s Modulus", "1e4") + number("Thickness", "2e-3");
+  const std::string surface = number("Surface Density", "1"), density = number("Density", "250");
+  EXPECT_NEAR(cloth<3>(flag + density).density, 0.5, 1e-15);
+  EXPECT_THAT(error([&] { cloth<3>(flag + density + surface); }),
+              HasSubstr("\"Flag\" has both \"Surface Density\" and \"Density\""));
+  EXPECT_THAT(error([&] { cloth<3>(flag); }), HasSubstr("\"Flag\" has no mass"));
+  EXPECT_THAT(error([&] { cloth<3>(flag + number("Density", "0")); }), HasSubstr("greater than 0"));
+}
+
 TEST(Input, SubStepsAreOfExplicitForces) {
   const std::string sub_steps = R"(<Parameter name="Most Sub-Steps" type="int" value="4"/>)";
   const std::string ball = geometry("ball", number("Radius", "1"));

@@ -30,6 +30,23 @@ TEST(RigidInput, Mass) {
   EXPECT_EQ(error<2>(disc + motion("static")), "no error");
 }
 
+TEST(RigidInput, MassOfAShell) {
+  const std::string plate = geometry("plate", numbers("Size", "4, 0") + text("Normal", "y")),
+                    surface = number("Surface Density", "1"), density = number("Density", "1"),
+                    thickness = number("Thickness", "0.1"), mass = number("Mass", "1");
+  EXPECT_EQ(error<2>(plate + thickness + density), "no error");
+  EXPECT_THAT(error<2>(plate), HasSubstr("give \"Surface Density\" or \"Mass\""));
+  EXPECT_THAT(error<2>(plate + surface + thickness + density),
+              HasSubstr("both \"Surface Density\" and \"Density\""));
+  EXPECT_THAT(error<2>(plate + surface + thickness),
+              HasSubstr("both \"Surface Density\" and \"Thickness\""));
+  EXPECT_THAT(error<2>(plate + density), HasSubstr("but has no \"Thickness\""));
+  EXPECT_THAT(error<2>(plate + thickness + mass), HasSubstr("but has no \"Density\""));
+  EXPECT_THAT(error<2>(plate + thickness + density + mass),
+              HasSubstr("both \"Density\" and \"Mass\""));
+  EXPECT_THAT(error<2>(disc + thickness + density), HasSubstr("so it has no \"Thickness\""));
+}
+
 TEST(RigidInput, OwnCentreAndInertia) {
   const std::string ball = geometry("ball", number("Radius", "0.2")) + number("Mass", "1");
   EXPECT_THAT(error<2>(disc + number("Density", "1") + numbers("Center of Mass", "0, 0.1")),

@@ -34,6 +34,11 @@ TEST(Mass, Shells) {
   EXPECT_NEAR(rod.mass, 2, 1e-13);
   EXPECT_NEAR(rod.inertia(0, 0), 2 * 16.0 / 12, 1e-12);
   EXPECT_EQ(rod.volume, 0);
+  // A rod of the mass of the first, made of a sheet of 5 mm and 100 kg/m^2.
+  const auto thick = body<2>(geometry("plate", numbers("Size", "4, 0") + text("Normal", "y")) +
+                             number("Thickness", "0.005") + number("Density", "100"));
+  EXPECT_NEAR(thick.density, 0.5, 1e-15);
+  EXPECT_NEAR(thick.mass, 2, 1e-13);
   // A boat of 2 x 1 (bottom 2, walls 1 each): its centre of mass lies 1/4 above the bottom.
   const auto boat = body<2>(geometry("open box", numbers("Size", "2, 1")) + number("Mass", "1"));
   EXPECT_LE((boat.pose.position - Point<2>(0, -0.25)).norm(), 1e-13);
