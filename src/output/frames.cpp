@@ -122,6 +122,7 @@ void FrameWriter::write(long long step, double time, const std::vector<BoxFrame>
   file.write_attribute<long long>("/", "number", next_number_);
   file.write_attribute<double>("/", "time", time);
   file.write_attribute<long long>("/", "step", step);
+  write_origin(file, origin_);
   const std::string relative = frame_file(next_number_);
   std::string grids;
   for (const BoxFrame& box : boxes) {
@@ -198,6 +199,7 @@ void FrameWriter::write_index() const {
   std::vector<long long> steps;
   std::string grids;
   Hdf5File index = Hdf5File::create(serial_communicator(), directory_ + "/frames.h5");
+  write_origin(index, origin_);
   for (const Entry& entry : entries_) {
     times.push_back(entry.time);
     steps.push_back(entry.step);

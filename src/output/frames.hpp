@@ -7,6 +7,7 @@
 
 #include "base/communicator.hpp"
 #include "output/hdf5_file.hpp"
+#include "output/run_origin.hpp"
 
 namespace lockstep {
 
@@ -57,8 +58,8 @@ struct SurfaceFrame {
 /// Writes a time series of frames into a folder:
 ///   frames/frame-000012.h5  one frame: /fluid/FIELD [z][y][x] or [z][y][x][3], and for every
 ///   surface
-///                           /solids/NAME/{vertices, simplices, FIELD}; attributes time [s] and
-///                           step
+///                           /solids/NAME/{vertices, simplices, FIELD}; attributes time [s], step
+///                           and those of `write_origin`
 ///   frames.h5               all of them, as external links frame-000012, with /times and /steps
 ///   frames.xmf              XDMF 2: the series for ParaView
 /// Each file appears under its name only when it is complete, so that whatever ends the run, every
@@ -68,6 +69,8 @@ class FrameWriter {
   FrameWriter(const Communicator& comm, const std::string& directory,
               const BoxStorage& storage = {});
 
+  /// Says whose frames are written from now on.
+  void set_origin(const RunOrigin& origin) { origin_ = origin; }
   /// Begins a new series: removes the frames of an earlier run in this folder.
   void start();
   /// Continues a series: drops the frames later than `time` [s].
@@ -98,6 +101,7 @@ class FrameWriter {
   Communicator comm_;
   std::string directory_;
   BoxStorage storage_;
+  RunOrigin origin_;
   std::vector<Entry> entries_;  // rank 0 only
   int n_frames_ = 0;
   long long next_number_ = 0;

@@ -206,7 +206,19 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
       failure = "it is not a finite number";
   }
   agree(failure, fmt::format("write the attribute '{}'", name));
-  failure = try_on_root(comm_, [&] {
+  create_attribute(object, name, type, data);
+}
+
+void Hdf5File::write_text_attribute(const std::string& object, const std::string& name,
+                                    const std::string& text) {
+  const hdf5::Handle type = text_type(H5T_VARIABLE);
+  const char* const data = text.c_str();
+  create_attribute(object, name, type, &data);
+}
+
+void Hdf5File::create_attribute(const std::string& object, const std::string& name,
+                                std::int64_t type, const void* data) {
+  const std::string failure = try_on_root(comm_, [&] {
     const hdf5::Handle space = hdf5::own_space(H5Screate(H5S_SCALAR));
     const hdf5::Handle owner = hdf5::own_object(H5Oopen(id(), inside(object).c_str(), H5P_DEFAULT));
     const hdf5::Handle attribute =

@@ -74,6 +74,11 @@ class Hdf5File {
   template <typename T>
   T read_attribute(const std::string& object, const std::string& name) const;
 
+  /// An attribute of any length, which is not for `read_attribute`: it is stored apart from its
+  /// object, because HDF5 keeps 64 kB at most in one.
+  void write_text_attribute(const std::string& object, const std::string& name,
+                            const std::string& text);
+
   /// Text of any length as a scalar dataset; the text of rank 0 is written.
   void write_text(const std::string& name, const std::string& text);
   std::string read_text(const std::string& name) const;
@@ -120,6 +125,9 @@ class Hdf5File {
   std::int64_t id() const { return writing_ ? structure_.id() : id_; }
   /// Throws on all ranks if any of them failed; `action` completes "Cannot ... in file".
   void agree(const std::string& failure, const std::string& action) const;
+  /// Creates a scalar attribute of an HDF5 type (hid_t) with the value at `data`.
+  void create_attribute(const std::string& object, const std::string& name, std::int64_t type,
+                        const void* data);
   /// Creates a dataset and returns where in the file its values lie [bytes].
   template <typename T>
   GlobalIndex reserve(const std::string& name, const std::vector<GlobalIndex>& extents);

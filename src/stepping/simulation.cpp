@@ -238,6 +238,7 @@ void Simulation<dim>::write_checkpoint() {
   observers_.save(checkpoint);
   checkpoint.file().write_attribute("/", "last dt", last_dt_);
   checkpoint.file().write_attribute("/", "last frame", last_frame_);
+  write_origin(checkpoint.file(), origin_);
   checkpoint.finish(scene_options_.output.keep_checkpoints);
 }
 

@@ -119,6 +119,7 @@ class Simulation {
   Schedule checkpoint_times_;
   WallClockSchedule checkpoint_clock_;  ///< where the scene gives no interval of them
   static constexpr double never_ = -1e300;
+  RunOrigin origin_;   ///< commit, scene and parameters of this run
   std::string files_;  // checksums of those that the solids are read from
   long long step_ = 0, first_step_ = 0;
   RunWarnings<dim> warnings_;

@@ -26,7 +26,9 @@ void Simulation<dim>::begin_outputs() {
   lock_folder();
   if (options_.restart_file.empty())
     remove_earlier_tables(comm_, options_.output_directory, scene_);
-  record_input(comm_, options_.output_directory, options_.scene_file, to_xml(scene_));
+  origin_ = run_origin(options_.scene_file, to_xml(scene_));
+  frames_.set_origin(origin_);
+  record_input(comm_, options_.output_directory, options_.scene_file, origin_.parameters);
   header_ = run_header(comm_, options_.command_line);
   write_summary(comm_, options_.output_directory, unfinished_summary("running", "", header_));
   first_step_ = step_;

@@ -1,4 +1,5 @@
 """When frames, looks of observers and checkpoints come, in runs that go straight on and in runs that are restarted."""
+import json
 import sys
 import tempfile
 import unittest
@@ -40,6 +41,20 @@ class OutputTimes(unittest.TestCase):
 
     def checkpoints(self):
         return sorted(int(path.stem.split("-")[1]) for path in self.output.glob("checkpoint-*.h5"))
+
+    def test_each_file_says_what_it_comes_from(self):
+        """Frames, their index and checkpoints hold what the run would be done again from."""
+        self.run_scene("--set", "Title=once more")
+        parameters = (self.output / "used-parameters.xml").read_text()
+        self.assertIn("once more", parameters)
+        commit = json.loads((self.output / "summary.json").read_text())["versions"]["git"]
+        files = [self.output / "frames.h5", *self.output.glob("frames/*.h5"), *self.output.glob("checkpoint-*.h5")]
+        self.assertEqual(len(files), 1 + 6 + 5)
+        for path in files:
+            with self.subTest(file=path.name), h5py.File(path) as file:
+                self.assertEqual(file.attrs["commit"], commit)
+                self.assertEqual(file.attrs["scene"], "scene.xml")
+                self.assertEqual(file.attrs["parameters"], parameters)
 
     def test_intervals_that_are_no_multiples_of_steps_do_not_drift(self):
         self.run_scene()

@@ -91,6 +91,7 @@ TEST(FrameWriter, LeavesASeriesForAnIndependentReader) {
   const Communicator comm = Tpetra::getDefaultComm();
   const std::string folder = fresh_folder("series");
   FrameWriter solid(comm, folder + "/3d");
+  solid.set_origin({"0123abc", "scène.xml", std::string(100000, 'p')});  // over 64 kB
   solid.start();
   solid.write(0, 0.0, {make_box(3, 0)}, {make_triangle(0.25)});
   solid.write(10, 0.1, {make_box(3, 1)}, {make_triangle(0.5)});

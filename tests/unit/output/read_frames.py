@@ -57,6 +57,12 @@ def check_fluid(fluid, number, depth):
     assert fluid["nodes"] == [depth + 1, 5, 5]
 
 
+def check_origin(attributes, parameters):
+    assert attributes["commit"] == ("0123abc" if parameters else ""), attributes["commit"]
+    assert attributes["scene"] == ("sc\u00e8ne.xml" if parameters else ""), attributes["scene"]
+    assert attributes["parameters"] == parameters
+
+
 def check_3d(folder):
     series = read_series(folder)
     assert [time for time, _ in series] == [0.0, 0.1]
@@ -76,11 +82,15 @@ def check_3d(folder):
         assert master["times"][...].tolist() == [0.0, 0.1]
         assert master["steps"][...].tolist() == [0, 10]
         assert master["frame-000001"].attrs["time"] == 0.1
+        for holder in (master, master["frame-000000"], master["frame-000001"]):
+            check_origin(holder.attrs, 100000 * "p")
         assert master["frame-000001/fluid/pressure"][1, 0, 3] == 1103
         assert master["frame-000001/fluid/pressure"].attrs["unit"] == b"Pa"
 
 
 def check_2d(folder):
+    with h5py.File(os.path.join(folder, "frames.h5"), "r") as master:
+        check_origin(master["frame-000000"].attrs, "")
     (time, grids), = read_series(folder)
     assert time == 0.0
     check_fluid(grids["fluid"], 0, 1)
