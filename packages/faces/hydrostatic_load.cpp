@@ -1,11 +1,17 @@
 #include "faces/hydrostatic_load.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "geometry/solid_volume.hpp"
 
 namespace lockstep {
+
+namespace {
+/// Layers of cells below a solid, and above it, whose faces may be beside it.
+constexpr int layers_below = 2;
+}  // namespace
 
 template <int dim>
 HydrostaticLoads<dim>::HydrostaticLoads(const FluidDiscretization<dim>& fluid,
@@ -19,7 +25,14 @@ HydrostaticLoads<dim>::HydrostaticLoads(const FluidDiscretization<dim>& fluid,
       pressures_(surface.solids().size()),
       centers_(pressures_.size(), Point<dim>::Zero()),
       masses_(pressures_.size(), 0),
-      sums_(pressures_.size()) {
+      sums_(pressures_.size()),
+      layers_(pressures_.size()) {
+  constexpr double round_off = 1e-9;
+  int steepest = 0;
+  const double steep = gravity_.cwiseAbs().maxCoeff(&steepest);
+  if (steep > 0 &&
+      (gravity_ - gravity_[steepest] * Point<dim>::Unit(steepest)).norm() <= round_off * steep)
+    vertical_ = steepest;
   const auto levels =
       fluid.liquid() ? fluid.liquid()->levels_at_solids() : std::vector<WaterLevel>();
   for (int s = 0; s < static_cast<int>(pressures_.size()); ++s) {
@@ -28,8 +41,12 @@ HydrostaticLoads<dim>::HydrostaticLoads(const FluidDiscretization<dim>& fluid,
       continue;
     const WaterLevel* level = levels.empty() ? nullptr : &levels[s];
     const bool in_air = is_below_air_ && (!level->known || (solid.closed && !level->is_wet));
-    if (!in_air)
-      set_rest(s, fluid.bounds(), level);
+    if (in_air)
+      continue;
+    set_rest(s, fluid.bounds(), level);
+    if (vertical_ >= 0 && solid.closed && solid.rigid)
+      layers_[s].resize(2 * layers_below + 1 +
+                        std::lround(surface.own_bounds(s).sizes()[vertical_] / spacing_));
   }
 }
 
@@ -66,6 +83,18 @@ void HydrostaticLoads<dim>::set_rest(int solid, const Box<dim>& bounds, const Wa
                       masses_[solid];
 }
 
+/// The layer of cells that a point is in; null: the solid has none.
+template <int dim>
+typename HydrostaticLoads<dim>::Layer* HydrostaticLoads<dim>::layer_at(int solid,
+                                                                       const Point<dim>& x) {
+  std::vector<Layer>& layers = layers_[solid];
+  if (layers.empty())
+    return nullptr;
+  const double lowest = surface_.own_bounds(solid).min()[vertical_];
+  const double place = std::floor((x[vertical_] - lowest) / spacing_) + layers_below;
+  return &layers[static_cast<int>(std::min(std::max(place, 0.0), layers.size() - 1.0))];
+}
+
 template <int dim>
 void HydrostaticLoads<dim>::add_closed(const ControlVolume<dim>& volume, int solid, double area,
                                        const Point<dim>& center) {
@@ -85,6 +114,11 @@ void HydrostaticLoads<dim>::add_closed(const ControlVolume<dim>& volume, int sol
     sum.force += force;
     sum.moment += force * arm;
     sum.open_area += push;
+    if (Layer* layer = layer_at(solid, of.center + shift)) {
+      layer->open_area[axis] += push;
+      if (axis == vertical_)
+        layer->moment += force * arm;
+    }
   }
 }
 
@@ -95,6 +129,9 @@ void HydrostaticLoads<dim>::add_lumped(int axis, int solid, double mass, const P
   Sum& sum = sums_[solid][axis];
   sum.force += mass * gravity_[axis];
   sum.moment += mass * gravity_[axis] * arm;
+  const Point<dim> lower = surface_.beside(solid, center) - 0.5 * spacing_ * Point<dim>::Unit(axis);
+  if (Layer* layer = axis == vertical_ ? layer_at(solid, lower) : nullptr)
+    layer->moment += mass * gravity_[axis] * arm;
 }
 
 template <int dim>
@@ -107,6 +144,11 @@ void HydrostaticLoads<dim>::sum(const Communicator& comm) {
       values.insert(values.end(), {sum.force, sum.open_area, sum.area});
       values.insert(values.end(), sum.moment.begin(), sum.moment.end());
     }
+  for (const std::vector<Layer>& layers : layers_)
+    for (const Layer& layer : layers) {
+      values.insert(values.end(), layer.open_area.begin(), layer.open_area.end());
+      values.insert(values.end(), layer.moment.begin(), layer.moment.end());
+    }
   if (values.empty())
     return;
   sum_all(comm, values.data(), static_cast<int>(values.size()));
@@ -117,6 +159,13 @@ void HydrostaticLoads<dim>::sum(const Communicator& comm) {
       sum.open_area = *value++;
       sum.area = *value++;
       for (double& moment : sum.moment)
+        moment = *value++;
+    }
+  for (std::vector<Layer>& layers : layers_)
+    for (Layer& layer : layers) {
+      for (double& area : layer.open_area)
+        area = *value++;
+      for (double& moment : layer.moment)
         moment = *value++;
     }
 }
@@ -160,19 +209,44 @@ std::vector<AxisLoad<dim>> HydrostaticLoads<dim>::on_grid() const {
   return loads;
 }
 
+/// The moment about `lever` of forces along the vertical, of the layers in which as much of the
+/// solid is wet at one end of the lever as at the other.
+template <int dim>
+double HydrostaticLoads<dim>::moment_of_even_layers(int solid, int lever) const {
+  constexpr double round_off = 1e-9;
+  double moment = 0;
+  for (const Layer& layer : layers_[solid])
+    if (std::abs(layer.open_area[lever]) <= round_off * sums_[solid][lever].area)
+      moment += layer.moment[lever];
+  return moment;
+}
+
+/// A torque is a matter of two axes. On a round solid the pressure of each cell has moments along
+/// both, which cancel, so that the moment along one alone may not be taken off: beside a wall, and
+/// where the water is uneven, that gave a disc of 1e-3 of the fluid's density 20 rad/s in a step
+/// of 20 ms, and the water kilojoules.
 template <int dim>
 std::vector<AxisLoad<dim>> HydrostaticLoads<dim>::corrections() const {
   std::vector<AxisLoad<dim>> loads;
-  for (int s = 0; s < static_cast<int>(sums_.size()); ++s)
-    for (int axis = 0; axis < dim && !pressures_[s].gradient.isZero(0); ++axis) {
-      const Sum& sum = sums_[s][axis];
-      if (!surface_.solids()[s].closed || !is_covered(s, axis, sum))
+  for (int s = 0; s < static_cast<int>(sums_.size()); ++s) {
+    if (!surface_.solids()[s].closed || pressures_[s].gradient.isZero(0))
+      continue;
+    std::array<bool, dim> covered;
+    for (int axis = 0; axis < dim; ++axis)
+      covered[axis] = is_covered(s, axis, sums_[s][axis]);
+    for (int axis = 0; axis < dim; ++axis) {
+      if (!covered[axis])
         continue;
       AxisLoad<dim> load = exact(s, axis);
-      load.force -= sum.force;
-      load.moment -= sum.moment;
+      load.force -= sums_[s][axis].force;
+      for (int lever = 0; lever < dim; ++lever)
+        if (covered[lever])
+          load.moment[lever] -= sums_[s][axis].moment[lever];
+        else if (axis == vertical_)
+          load.moment[lever] -= moment_of_even_layers(s, lever);
       loads.push_back(load);
     }
+  }
   return loads;
 }
 

@@ -60,7 +60,7 @@ class HydrostaticLoads {
   /// W^T M_F g - B^T p_h of closed solids and rigid shells along every axis. Local.
   std::vector<AxisLoad<dim>> on_grid() const;
   /// F_h + B^T p_h - W^T M_F g of closed solids, along the axes on which the grid sees both their
-  /// ends. Local.
+  /// ends. A moment is corrected where the grid sees both ends along its lever, too. Local.
   std::vector<AxisLoad<dim>> corrections() const;
   /// Masses of fluid that closed solids displace. Local.
   std::vector<DisplacedMass<dim>> displaced_masses() const;
@@ -72,7 +72,14 @@ class HydrostaticLoads {
     double open_area = 0;  ///< signed area of the closed parts beside a pressure [m^(dim-1)]
     double area = 0;       ///< area of all closed parts [m^(dim-1)]
   };
+  /// Cells at one height.
+  struct Layer {
+    std::array<double, dim> open_area{};     ///< as in `Sum`, of each axis
+    Point<dim> moment = Point<dim>::Zero();  ///< of forces along the vertical, as in `Sum` [N m]
+  };
   void set_rest(int solid, const Box<dim>& bounds, const WaterLevel* level);
+  Layer* layer_at(int solid, const Point<dim>& x);
+  double moment_of_even_layers(int solid, int lever) const;
   bool is_covered(int solid, int axis, const Sum& sum) const;
   AxisLoad<dim> exact(int solid, int axis) const;
 
@@ -84,6 +91,8 @@ class HydrostaticLoads {
   std::vector<Point<dim>> centers_;           ///< centres of that mass [m]
   std::vector<double> masses_;                ///< masses of the displaced fluid [kg]
   std::vector<std::array<Sum, dim>> sums_;    ///< on the grid
+  int vertical_ = -1;                         ///< axis of gravity; -1: it lies along none
+  std::vector<std::vector<Layer>> layers_;    ///< by rigid solid, from below its lowest point on
 };
 
 }  // namespace lockstep

@@ -9,9 +9,9 @@ namespace {
 /// apart: between centres of cells on both sides lies one that is inside.
 constexpr double least_thickness = 2;
 /// Density of a solid over the fluid's from which on fluxes serve. Nothing is lumped on a body, so
-/// that a ball of 3e-3 and less gains energy where it bumps against a wall, one of 1e-2 under
-/// another body creeps at 6e-6 sqrt(g L), and a solve for an implicit solid of 1e-3 did not
-/// converge in a step of many of its periods (docs/method.md, "Contact"; study contact-stability).
+/// that a ball of 1e-4 and less gains energy where it leaves the water, one of 1e-2 under another
+/// body creeps at 6e-6 sqrt(g L), and a solve for an implicit solid of 1e-3 did not converge in a
+/// step of many of its periods (docs/method.md, "Contact"; study contact-stability).
 constexpr double least_density = 2e-2;
 
 template <int dim>
