@@ -61,7 +61,7 @@ struct SurfaceFrame {
 ///                           /solids/NAME/{vertices, simplices, FIELD}; attributes time [s], step
 ///                           and those of `write_origin`
 ///   frames.h5               all of them, as external links frame-000012, with /times and /steps
-///   frames.xmf              XDMF 2: the series for ParaView
+///   frames.xmf              XDMF 3: the series for ParaView
 /// Each file appears under its name only when it is complete, so that whatever ends the run, every
 /// finished frame can be read. All member functions are collective and throw OutputError.
 class FrameWriter {

@@ -137,7 +137,7 @@ std::string frame(double time, const std::string& grids) {
 std::string document(const std::string& frames) {
   return fmt::format(
       "<?xml version=\"1.0\"?>\n"
-      "<Xdmf Version=\"2.0\">\n"
+      "<Xdmf Version=\"3.0\">\n"
       " <Domain>\n"
       "  <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n"
       "{}"

@@ -3,7 +3,7 @@
 
 #include "output/frames.hpp"
 
-/// XDMF 2 descriptions of what FrameWriter stores.
+/// XDMF 3 descriptions of what FrameWriter stores.
 namespace lockstep::xdmf {
 
 /// The name under which something called `name` is stored: letters, digits, '_', '-' and '.' stay,

@@ -106,7 +106,7 @@ def main(folder, dim, drops=()):
                 frames += write_drops(file, group + "/drops", drops)
             frames += "\n  </Grid>"
     (folder / "frames.xmf").write_text(
-        '<?xml version="1.0"?>\n<Xdmf Version="2.0">\n <Domain>\n'
+        '<?xml version="1.0"?>\n<Xdmf Version="3.0">\n <Domain>\n'
         f' <Grid Name="run" GridType="Collection" CollectionType="Temporal">{frames}\n </Grid>\n </Domain>\n</Xdmf>\n')
 
 

@@ -38,7 +38,7 @@ def read_grid(folder, grid):
 
 def read_series(folder):
     root = ElementTree.parse(os.path.join(folder, "frames.xmf")).getroot()
-    assert root.get("Version") == "2.0"
+    assert root.get("Version") == "3.0"
     series = root.find("Domain/Grid")
     assert series.get("CollectionType") == "Temporal"
     return [(float(frame.find("Time").get("Value")),
