@@ -74,8 +74,8 @@ class HydrostaticLoads {
   };
   /// Cells at one height.
   struct Layer {
-    std::array<double, dim> open_area{};     ///< as in `Sum`, of each axis
-    Point<dim> moment = Point<dim>::Zero();  ///< of forces along the vertical, as in `Sum` [N m]
+    std::array<double, dim> open_area{};     ///< by axis, as in `Sum` [m^(dim-1)]
+    Point<dim> moment = Point<dim>::Zero();  ///< moment of vertical forces, as in `Sum` [N m]
   };
   void set_rest(int solid, const Box<dim>& bounds, const WaterLevel* level);
   Layer* layer_at(int solid, const Point<dim>& x);
