@@ -57,9 +57,7 @@ const FluidGeometry<dim>& MacFluid<dim>::freeze(const Surface& surface,
   check_input(!liquid_ || has_begun_ || geometry.volume > 0 || flow_.liquid->starts_empty(),
               "Of what is in \"Liquid\", nothing is in the domain and outside of solids.");
   has_begun_ = true;
-  if (liquid_)
-    balance_waves<dim>(geometry, {flow_.liquid->interface().distance(), flow_.velocity}, flow_.time,
-                       flow_.domain);
+  balance_waves(0, flow_);
   viscosity_.renew();
   flow_.set_prescribed(flow_.time, flow_.velocity);
   flow_.set_prescribed(flow_.time, flow_.prediction);
@@ -269,14 +267,7 @@ template <int dim>
 ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
   flow_.time = time + dt;
   flow_.last_step = dt;
-  if (liquid_) {
-    // Fluxes bring in what is below the surface in the middle of the step, rays what is there at
-    // the start.
-    const InterfaceModel<dim>& interface = flow_.liquid->interface();
-    balance_waves<dim>(flow_.geometry,
-                       {interface.distance(), flow_.velocity, interface.moves_by_fluxes() ? dt : 0},
-                       flow_.time, flow_.domain);
-  }
+  balance_waves(dt, flow_);
   flow_.set_prescribed(flow_.time, flow_.prediction);
   ForceImpulse<dim> given;
   const MacGeometry<dim>& geometry = flow_.geometry;

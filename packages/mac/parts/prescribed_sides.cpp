@@ -67,11 +67,17 @@ double loss_of_inflow(const FaceProperties& face, double inwards, double along_2
     return 0;
   return -0.5 * face.distance_factor * std::min(step * (inwards * inwards + along_2), inwards);
 }
-}  // namespace
 
-namespace {
 struct FaceSide {
   int axis, end;
+};
+
+/// The surface of a liquid, as it comes to stand at the sides.
+template <int dim>
+struct RisingSurface {
+  const CellField& phi;            ///< signed distance, negative in the liquid [m]
+  const FaceField<dim>& velocity;  ///< [m/s]
+  double lead = 0;                 ///< time by which it goes on with the velocity [s]
 };
 
 /// The part of the cell beside a face that is liquid, with that of the cell above if its centre is
@@ -116,21 +122,26 @@ std::pair<double, double> wet_inflow(const MacDomain<dim>& domain, const MacGeom
 }  // namespace
 
 template <int dim>
-void balance_waves(const MacGeometry<dim>& geometry, const RisingSurface<dim>& surface, double time,
-                   MacDomain<dim>& domain) {
+void balance_waves(double lead, MacFlow<dim>& flow) {
+  if (!flow.liquid)
+    return;
+  const InterfaceModel<dim>& interface = flow.liquid->interface();
+  const RisingSurface<dim> surface{interface.distance(), flow.velocity,
+                                   interface.moves_by_fluxes() ? lead : 0};
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
-      auto& wave = domain.boundary.sides[axis][end].wave;
+      auto& wave = flow.domain.boundary.sides[axis][end].wave;
       if (!wave)
         continue;
       wave->stream = 0;
-      const auto [area, into] = wet_inflow<dim>(domain, geometry, surface, time, {axis, end});
+      const auto [area, into] =
+          wet_inflow<dim>(flow.domain, flow.geometry, surface, flow.time, {axis, end});
       double width = 1;  // [m]; in the plane that of a slice
       for (int a = 0; a < dim; ++a)
         if (a != axis && wave->up[a] == 0)
-          width *= domain.bounds().sizes()[a];
+          width *= flow.domain.bounds().sizes()[a];
       if (area > 0)
-        wave->stream = (wave->flow(time) * width - into) / area;
+        wave->stream = (wave->flow(flow.time) * width - into) / area;
     }
 }
 
@@ -206,10 +217,8 @@ std::vector<std::pair<std::string, std::string>> notes_of_inflows(
   return notes;
 }
 
-template void balance_waves<2>(const MacGeometry<2>&, const RisingSurface<2>&, double,
-                               MacDomain<2>&);
-template void balance_waves<3>(const MacGeometry<3>&, const RisingSurface<3>&, double,
-                               MacDomain<3>&);
+template void balance_waves<2>(double, MacFlow<2>&);
+template void balance_waves<3>(double, MacFlow<3>&);
 template Momentum<2> push_of_pressures<2>(const MacDomain<2>&, const MacGeometry<2>&, double,
                                           double, const FaceField<2>&, FaceField<2>&);
 template Momentum<3> push_of_pressures<3>(const MacDomain<3>&, const MacGeometry<3>&, double,

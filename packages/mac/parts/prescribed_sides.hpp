@@ -5,7 +5,7 @@
 
 #include "interfaces/momentum.hpp"
 #include "interfaces/prescribed_flux.hpp"
-#include "staggered/state/mac_geometry.hpp"
+#include "mac/state/mac_flow.hpp"
 
 namespace lockstep {
 
@@ -13,18 +13,12 @@ namespace lockstep {
 template <int dim>
 std::vector<PrescribedFlux> fluxes_of_sides(const MacDomain<dim>& domain,
                                             const MacGeometry<dim>& geometry, double time);
-/// The surface of a liquid, as it comes to stand at the sides.
+/// Sets the streams of sides that send waves, to bring in as much below the surface at the fluid's
+/// time as their waves do. `lead`: time by which the surface goes on until then, of one that is
+/// moved by fluxes: these bring in what is below it in the middle of the step, rays what is there
+/// at the start [s]. Collective.
 template <int dim>
-struct RisingSurface {
-  const CellField& phi;            ///< signed distance, negative in the liquid [m]
-  const FaceField<dim>& velocity;  ///< [m/s]
-  double lead = 0;                 ///< time by which it goes on with the velocity [s]
-};
-/// Sets the streams of sides that send waves, to bring in as much below the surface at `time` as
-/// their waves do. Collective.
-template <int dim>
-void balance_waves(const MacGeometry<dim>& geometry, const RisingSurface<dim>& surface, double time,
-                   MacDomain<dim>& domain);
+void balance_waves(double lead, MacFlow<dim>& flow);
 /// Pushes the owned free faces of open sides with a pressure by it at `time` over `dt` [s], as if
 /// it were that of cells beyond; the pressure that is solved for is 0 there. What comes in has
 /// gained its speed from rest on the way: there the pressure is less by rho u^2/2. `velocity`: that
