@@ -8,7 +8,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
-from simulation import attempt, column, simulate, table  # noqa: E402
+from simulation import attempt, column, histories, simulate, table  # noqa: E402
 
 G = 9.81
 
@@ -120,6 +120,33 @@ class Solitary(unittest.TestCase):
                 result = attempt(file, Path(folder) / "output")
                 self.assertEqual(result.returncode, 2, result.stdout)
                 self.assertIn(words, result.stdout)
+
+
+class ClosedTank(unittest.TestCase):
+    """Waves that come back from a wall bring no water: a tank of 3 x 1 m, half full, from the tenth second to the twentieth."""
+
+    def change(self, dimension=2, end="lower", model="volume of fluid", **fluid):
+        """Mean volume over that of the start, less 1; without the stream that takes back what waves bring it is 1 to 2 %."""
+        lower, upper, cells = ((0., -.5, 0.), (3., .5, .25), (48, 16, 4))
+        other = {"lower": "upper", "upper": "lower"}[end]
+        sides = {f"x {end}": {"Type": "inflow", "Wave": {"Ramp Time": 1.5, "Height": .06, "Frequency": 1.}},
+                 **{side: {"Type": "slip wall"} for side in (f"x {other}", "y lower", "z lower", "z upper")[:2 * dimension - 2]},
+                 "y upper": {"Type": "open"}}
+        text = xml("Scene", {
+            "Dimension": dimension, "Domain": {"Lower": lower[:dimension], "Upper": upper[:dimension], "Cells": cells[:dimension], "Sides": sides},
+            "Fluid": {"Gravity": (0., -G, 0.)[:dimension],
+                      "Free Surface": {"Interface": {"Type": model}, "Liquid": {"Tank": {"Type": "level"}}}, **fluid},
+            "Time": {"End": 20., "Fixed Step": .02}, "Output": {"Frames": False}})
+        history, _ = histories(text)
+        volumes = column(history, "liquid_volume")
+        late = [volume for time, volume in zip(column(history, "time"), volumes) if time > 10]
+        return sum(late) / len(late) / volumes[0] - 1
+
+    def test_it_keeps_its_water(self):
+        water, air = {"Density": 1000.}, {"Phases": {"Liquid": {"Density": 1000.}, "Gas": {"Density": 1.2}}}
+        for case in (water, {"model": "particle level set", **water}, {"end": "upper", **water}, {"dimension": 3, **water}, air):
+            with self.subTest(case=case):
+                self.assertLess(abs(self.change(**case)), .003)
 
 
 if __name__ == "__main__":

@@ -78,12 +78,17 @@ struct RisingSurface {
   const CellField& phi;            ///< signed distance, negative in the liquid [m]
   const FaceField<dim>& velocity;  ///< [m/s]
   double lead = 0;                 ///< time by which it goes on with the velocity [s]
+  bool has_gas = false;            ///< the air above it is fluid, too
 };
 
-/// The part of the cell beside a face that is liquid, with that of the cell above if its centre is
-/// in the air [cells]: where the surface crosses the line of their centres.
-double wet_height(double phi, double spacing) {
-  return phi > -spacing ? 0.5 - phi / spacing : 1;
+/// The part of the cell beside a face that is liquid [cells]. Massless air has no faces here: below
+/// it the cell at the surface has that of the cell above, too, up to where the surface crosses the
+/// line of their centres.
+double wet_height(double phi, double spacing, bool has_gas) {
+  const double height = 0.5 - phi / spacing;
+  if (has_gas)
+    return std::clamp(height, 0.0, 1.0);
+  return height < 1.5 ? height : 1;
 }
 
 /// Signed distance of a cell's centre from the surface that goes on for the lead [m].
@@ -112,7 +117,7 @@ std::pair<double, double> wet_inflow(const MacDomain<dim>& domain, const MacGeom
     const int fluid = is_upper ? domain.grid.neighbor(cell, axis, 0) : cell;
     const double phi = height_over<dim>(domain.grid, surface, side.wave->up, fluid);
     const double wet = geometry.face_table.area() * geometry.flux_fraction(axis, cell) *
-                       wet_height(phi, domain.spacing());
+                       wet_height(phi, domain.spacing(), surface.has_gas);
     area += wet;
     into += wet * side.mean_velocity(axis, domain.face_box(axis, cell), time)[axis];
   }
@@ -127,7 +132,7 @@ void balance_waves(double lead, MacFlow<dim>& flow) {
     return;
   const InterfaceModel<dim>& interface = flow.liquid->interface();
   const RisingSurface<dim> surface{interface.distance(), flow.velocity,
-                                   interface.moves_by_fluxes() ? lead : 0};
+                                   interface.moves_by_fluxes() ? lead : 0, flow.liquid->has_gas()};
   for (int axis = 0; axis < dim; ++axis)
     for (int end = 0; end < 2; ++end) {
       auto& wave = flow.domain.boundary.sides[axis][end].wave;
