@@ -114,7 +114,7 @@ void check_library(const ParameterList& library, const ParameterList& valid) {
                      {{"SPD Block Diagonal", {"Fluid Inverse Type", "Solid Inverse Type"}},
                       {"Lockstep Multigrid", {"Sweeps", "Cycle"}},
                       {"Lockstep Solid", {"Exact", "Inverse"}},
-                      {"Lockstep Schur", {"Inverse Type", "Largest Solid"}},
+                      {"Lockstep Schur", {"Inverse Type", "Largest Solid", "Least Added Mass"}},
                       {"Incomplete Cholesky", {}}});
   for (const auto& entry : library) {
     const ParameterList& list = library.sublist(entry.first);

@@ -3,9 +3,11 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_MultiVector.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
 
 #include "base/errors.hpp"
 #include "linear/action_operator.hpp"
+#include "linear/symmetry_check.hpp"
 #include "strategies/common/small_dense.hpp"
 
 namespace lockstep {
@@ -80,7 +82,44 @@ class Woodbury {
   RCP<Vector> rest_, of_solid_;          ///< work vectors
 };
 
+/// Largest eigenvalue of C^-1 B^T M B, from below.
+double added_mass(const BlockSystem& system, const LinearOperator& pressure_inverse) {
+  const CrsMatrix& coupling = *system.coupling_transposed();
+  const Eigen::MatrixXd solid_block = replicated(*assembled(system.solid_block()));
+  const Eigen::LLT<Eigen::MatrixXd> factors(solid_block);
+  Vector velocity(coupling.getRangeMap()), impulse(coupling.getRangeMap());
+  Vector divergence(coupling.getDomainMap()), pressure(coupling.getDomainMap());
+  pseudo_random(velocity, 1);
+  double largest = 0;
+  constexpr int n_steps = 3;
+  for (int step = 0; step < n_steps; ++step) {
+    const Eigen::VectorXd before = replicated(velocity);
+    coupling.apply(velocity, divergence, Teuchos::TRANS);
+    apply(pressure_inverse, divergence, pressure);
+    coupling.apply(pressure, impulse);
+    const Eigen::VectorXd added = replicated(impulse);
+    largest = std::max(largest, before.dot(added) / before.dot(solid_block * before));
+    const Eigen::VectorXd after = factors.solve(added);
+    if (after.norm() == 0)
+      break;
+    distribute(after / after.norm(), velocity);
+  }
+  return largest;
+}
+
 }  // namespace
+
+RCP<const LinearOperator> woodbury_inverse_within(
+    const WoodburyLimits& limits, const BlockSystem& system,
+    const std::function<RCP<const LinearOperator>()>& make_pressure_inverse) {
+  if (system.solid_block()->domain()->dim() > limits.most_unknowns ||
+      assembled(system.solid_block()).is_null())
+    return Teuchos::null;
+  const auto pressure_inverse = make_pressure_inverse();
+  return added_mass(system, *pressure_inverse) < limits.least_added_mass
+             ? Teuchos::null
+             : woodbury_inverse(system, pressure_inverse);
+}
 
 RCP<const LinearOperator> woodbury_inverse(const BlockSystem& system,
                                            const RCP<const LinearOperator>& pressure_inverse) {

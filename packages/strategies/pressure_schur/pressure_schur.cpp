@@ -23,9 +23,9 @@ PressureSchur::PressureSchur(const ParameterList& given)
       pressure_list_(pressure_inverse_list(given, "Automatic")) {}
 
 RCP<const LinearOperator> PressureSchur::schur_inverse(const BlockSystem& system) {
-  if (system.solid_block()->domain()->dim() <= largest_woodbury_rank &&
-      !assembled(system.solid_block()).is_null())
-    return woodbury_inverse(system, pressure_inverse());
+  if (auto inverse = woodbury_inverse_within({}, system, [&] { return pressure_inverse(); });
+      !inverse.is_null())
+    return inverse;
   if (layout() != nullptr)
     return layout()->schur_inverse();
   BlockSystem schur = system;

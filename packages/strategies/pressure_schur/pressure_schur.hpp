@@ -7,10 +7,10 @@ namespace lockstep {
 /// complement S = A + B C^-1 B^T of the solids. With the exact ones the spectrum lies in
 /// [-1.618, -1] and [0.618, 1] (Murphy, Golub and Wathen 2000): iterations depend neither on the
 /// density nor on h nor dt, and Ŝ is positive definite for closed balloons, where A is not. Ŝ^-1 is
-/// - for at most `largest_woodbury_rank` solid unknowns, that of A updated by Woodbury's formula;
-/// - for more, with multigrid: that of A and what flows through soft sheets, a little worse the
+/// - for a few light bodies (`WoodburyLimits`), that of A updated by Woodbury's formula;
+/// - else with multigrid: that of A and what flows through soft sheets, a little worse the
 ///   lighter other solids are;
-/// - for more, with other inverses: that of the assembled A + B diag(C)^-1 B^T, which is sparse for
+/// - else with other inverses: that of the assembled A + B diag(C)^-1 B^T, which is sparse for
 ///   the nodes of deformable solids.
 class PressureSchur : public MinresStrategy {
  public:

@@ -38,8 +38,9 @@ inline constexpr const char* block_inverses_request = "Lockstep block inverses";
 ///   "Lockstep Solid"       of C as the strategy's "Solid Inverse" says, to round-off with "Exact"
 ///                          (false), or by a list "Inverse" of its own; of assembled Schur
 ///                          complements of the solids to round-off, or by that list
-///   "Lockstep Schur"       of A + B C^-1 B^T ("Inverse Type": of A; "Largest Solid", 18: up to so
-///                          many solid unknowns by Woodbury's formula)
+///   "Lockstep Schur"       of A + B C^-1 B^T ("Inverse Type": of A; up to "Largest Solid", 18,
+///                          unknowns that are so light that the fluid adds "Least Added Mass",
+///                          1000, times their mass, by Woodbury's formula)
 ///   "Incomplete Cholesky"  without fill, of an assembled block
 /// Blocks with a negative sign, as -C of Eq. 16, get a negative inverse.
 void register_inverse_types();

@@ -120,15 +120,17 @@ class SchurType : public InverseType {
                 "The inverse \"Lockstep Schur\" stands for that of the pressure block A.");
     const auto factory =
         getInverseLibrary()->getInverseFactory(list().get<std::string>("Inverse Type"));
-    const int largest = value_of("Largest Solid", largest_woodbury_rank);
+    WoodburyLimits limits;
+    limits.most_unknowns = value_of("Largest Solid", limits.most_unknowns);
+    limits.least_added_mass = value_of("Least Added Mass", limits.least_added_mass);
     const auto inverse_of = [&factory](const Teko::LinearOp& matrix) {
       return Teko::LinearOp(Teko::buildInverse(*factory, matrix));
     };
     if (!system.has_solid())
       return inverse_of(op);
-    const bool is_assembled = !assembled(system.solid_block()).is_null();
-    if (is_assembled && system.solid_block()->domain()->dim() <= largest)
-      return woodbury_inverse(system, inverse_of(op));
+    if (const auto few = woodbury_inverse_within(limits, system, [&] { return inverse_of(op); });
+        !few.is_null())
+      return few;
     if (const auto multigrid = inverses.schur_multigrid(); !multigrid.is_null())
       return multigrid;
     const auto matrix = schur_with_diagonal(system);

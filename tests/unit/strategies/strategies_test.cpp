@@ -11,6 +11,8 @@
 #include "linear/matrix_rows.hpp"
 #include "solve/solver_file.hpp"
 #include "steepest_descent.hpp"
+#include "strategies/common/pressure_inverse.hpp"
+#include "strategies/common/woodbury.hpp"
 #include "strategies/register_strategies.hpp"
 #include "support/world.hpp"
 
@@ -236,6 +238,20 @@ TEST(Strategies, ExtremeDensitiesCostTheSchurStrategiesLittle) {
     else
       EXPECT_LE(*most, 1.5 * *fewest);
   }
+}
+
+TEST(Strategies, WoodburysFormulaIsForLightSolidsAlone) {
+  const auto is_taken = [](double mass, const WoodburyLimits& limits) {
+    const SaddleProblem problem(world(), tank(true, false, mass));
+    Teuchos::ParameterList exact;
+    exact.set("Type", "Direct");
+    const auto inverse = [&] { return pressure_inverse(problem.system, exact); };
+    return !woodbury_inverse_within(limits, problem.system, inverse).is_null();
+  };
+  EXPECT_TRUE(is_taken(1e-2, {}));
+  EXPECT_FALSE(is_taken(50, {}));
+  EXPECT_TRUE(is_taken(50, {6, 0}));
+  EXPECT_FALSE(is_taken(1e-2, {5, 0}));  // two plates, of six unknowns
 }
 
 TEST(Strategies, BlockEliminationCountsItsEntries) {
