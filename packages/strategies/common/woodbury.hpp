@@ -5,8 +5,8 @@
 
 namespace lockstep {
 
-/// When strategies take `woodbury_inverse`. With more or heavier solids multigrid stays that of A,
-/// and other inverses are those of A + B diag(C)^-1 B^T.
+/// Strategies take `woodbury_inverse` within these limits. With more or heavier solids multigrid
+/// stays that of A, and other inverses are those of A + B diag(C)^-1 B^T.
 struct WoodburyLimits {
   /// It stores a vector of pressures for each solid unknown: 18 for three rigid bodies in space.
   int most_unknowns = 18;
