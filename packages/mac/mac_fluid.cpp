@@ -9,7 +9,6 @@
 #include "mac/parts/prescribed_sides.hpp"
 #include "mac/pressure/extended_pressure.hpp"
 #include "mac/pressure/pressure_system.hpp"
-#include "mac/transport/interface_transport.hpp"
 #include "staggered/state/face_moments.hpp"
 #include "transport/uncovered_samples.hpp"
 
@@ -376,7 +375,7 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
     transport.advect_faces(scheme, flow_.velocity, flow_.prediction);
   }
   if (near_interface)
-    near_interface->advect(flow_.velocity, flow_.prediction);
+    carried_ = near_interface->advect(flow_.velocity, flow_.prediction);
   flow_.domain.halo.fill(flow_.prediction);
   advect_scalars(time, transport);
   invalid_ = transport.invalid();
@@ -388,10 +387,16 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
 template <int dim>
 void MacFluid<dim>::populate_uncovered(const MovingSurface<dim>& surface) {
   const GridState<dim>& state = flow_.geometry.state;
-  if (state.surface) {
+  if (state.surface || flow_.parameters.phases.gas) {
     const MacDomain<dim>& domain = flow_.domain;
-    const UncoveredGrid<dim> uncovered{domain.grid, domain.halo,  state,
-                                       surface,     flow_.nearby, invalid_};
+    std::function<double(int, int)> density;  // light gas says little of the liquid beside it
+    if (flow_.parameters.phases.gas)
+      density = [this](int axis, int face) {
+        return flow_.geometry.face_table(axis, face).density;
+      };
+    correct_flooded<dim>(flow_.geometry, std::exchange(carried_, {}), flow_.prediction, invalid_);
+    const UncoveredGrid<dim> uncovered{domain.grid,  domain.halo, state,  surface,
+                                       flow_.nearby, invalid_,    density};
     populate_uncovered_faces<dim>(uncovered, flow_.prediction);
     for (Scalar& scalar : flow_.scalars.all())
       populate_uncovered_scalar(uncovered, scalar.ambient, scalar.values);

@@ -7,6 +7,7 @@
 #include "mac/parts/mac_output.hpp"
 #include "mac/parts/mac_tiles.hpp"
 #include "mac/parts/mac_viscosity.hpp"
+#include "mac/transport/interface_transport.hpp"
 
 namespace lockstep {
 
@@ -98,6 +99,7 @@ class MacFluid : public FluidDiscretization<dim> {
   std::unique_ptr<MacGas<dim>> gas_;        ///< null: none is ever trapped
   bool has_begun_ = false;                  ///< with a geometry: sinks may empty it later
   InvalidSamples<dim> invalid_;             ///< samples without a value after the last transport
+  std::vector<CarriedMass> carried_;        ///< by it, near the interface of two phases
 };
 
 }  // namespace lockstep

@@ -34,6 +34,7 @@ class Fronts {
         state_(uncovered.after),
         surface_(uncovered.surface),
         nearby_(nearby),
+        weight_(uncovered.weight),
         kind_(kind),
         valid_(grid_.n_stored_cells()) {
     const auto look_at = [&](int id) {
@@ -154,23 +155,28 @@ class Fronts {
     waiting_.push_back(sample);
   }
 
+  double weight_of(int id) const {
+    return weight_ && kind_ != cell_centers ? weight_(kind_, id) : 1;
+  }
+
   /// One front: all samples that see a valid one get their value from those, at the same time.
   void advance(CellField& values) {
     std::vector<std::pair<int, double>> found;
     std::vector<Waiting<dim>> still_waiting;
     for (const Waiting<dim>& sample : waiting_) {
-      double sum = 0, base = 0;
-      int n = sample.sees_wall ? 1 : 0;
+      double sum = 0, base = 0, weights = sample.sees_wall ? weight_of(sample.id) : 0;
       for (int k = 0; k < sample.n_visible; ++k) {
         const int neighbor = sample.visible[k];
         if (!valid_[neighbor])
           continue;
-        if (n++ == 0)
+        const double weight = weight_of(neighbor);
+        if (weights == 0)
           base = values[neighbor];
-        sum += values[neighbor] - base;
+        weights += weight;
+        sum += weight * (values[neighbor] - base);
       }
-      if (n > 0)
-        found.emplace_back(sample.id, base + sum / n);
+      if (weights > 0)
+        found.emplace_back(sample.id, base + sum / weights);
       else
         still_waiting.push_back(sample);
     }
@@ -188,6 +194,7 @@ class Fronts {
   const GridState<dim>& state_;
   const MovingSurface<dim>& surface_;
   const NearbySurface<dim>& nearby_;
+  const std::function<double(int, int)>& weight_;
   SampleKind kind_;
   std::vector<char> valid_;
   std::vector<Waiting<dim>> waiting_;

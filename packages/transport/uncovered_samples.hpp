@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "geometry/moving_surface.hpp"
 #include "transport/grid_state.hpp"
 #include "transport/transport.hpp"
@@ -23,6 +25,8 @@ struct UncoveredGrid {
   const MovingSurface<dim>& surface;
   KeptSurface<dim>& kept;
   const InvalidSamples<dim>& invalid;
+  /// Weight of a face's velocity in the mean of a neighbour, a mass; empty: all are alike.
+  std::function<double(int axis, int face)> weight = {};
 };
 
 /// Populates uncovered faces after the geometry of t^{n+1} is set: invalid velocities get the mean

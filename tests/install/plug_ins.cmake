@@ -35,6 +35,19 @@ foreach(how library driver)
   endif()
 endforeach()
 
+# Sets `result` to the last number of a column of a table.
+function(last_value table column result)
+  file(STRINGS "${table}" rows)
+  list(FILTER rows EXCLUDE REGEX "^#")
+  list(GET rows 0 columns)
+  list(GET rows -1 row)
+  string(REPLACE "," ";" columns "${columns}")
+  string(REPLACE "," ";" row "${row}")
+  list(FIND columns "${column}" number)
+  list(GET row ${number} value)
+  set(${result} ${value} PARENT_SCOPE)
+endfunction()
+
 # A material, in a project of four lines; its scene names the library. Without fibres it is the law that ships.
 set(material "${copy}/material")
 run_step("Configuring the material" ${CMAKE_COMMAND} -S "${material}" -B "${material}/build" -G "${GENERATOR}"
@@ -49,21 +62,31 @@ run_step("The material without fibres" "${simulate}" "${material}/fibres.xml" --
          --set "Solids/Strip/Material/Fibre Stiffness=0")
 run_step("The material" "${simulate}" "${material}/fibres.xml" --output "${copy}/fibres")
 expect_same("${copy}/flesh/bodies.csv" "${copy}/no-fibres/bodies.csv")
-file(STRINGS "${copy}/flesh/bodies.csv" soft)
-file(STRINGS "${copy}/fibres/bodies.csv" stiff)
-list(FILTER soft EXCLUDE REGEX "^#")
-list(GET soft 0 columns)
-string(REPLACE "," ";" columns "${columns}")
-list(FIND columns "y" height_column)
-list(GET soft -1 soft)
-list(GET stiff -1 stiff)
-foreach(name soft stiff)
-  string(REPLACE "," ";" row "${${name}}")
-  list(GET row ${height_column} ${name}_height)
-endforeach()
+last_value("${copy}/flesh/bodies.csv" "y" soft_height)
+last_value("${copy}/fibres/bodies.csv" "y" stiff_height)
 # Its middle sinks by (rho - 1000) g L^2 / (3 E'), E' = E/(1 - nu^2) plus the fibres: 24 and 2.2 mm at rest, here still swinging.
 if(NOT soft_height LESS 0.588 OR NOT stiff_height GREATER 0.5956)
   message(FATAL_ERROR "The strip hangs at ${soft_height} m, with fibres at ${stiff_height} m.")
+endif()
+
+# A coupling that derives from one that ships, and a contact model, each a project of four lines.
+foreach(project coupling contact)
+  set(folder "${copy}/${project}")
+  run_step("Configuring the ${project}" ${CMAKE_COMMAND} -S "${folder}" -B "${folder}/build" -G "${GENERATOR}"
+           "-DCMAKE_PREFIX_PATH=${prefix}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+  run_step("Building the ${project}" ${CMAKE_COMMAND} --build "${folder}/build")
+endforeach()
+run_step("The coupling" "${simulate}" "${copy}/coupling/plate.yaml" --output "${copy}/plate")
+last_value("${copy}/plate/bodies.csv" "vx" speed)
+if(NOT speed GREATER 0.003333 OR NOT speed LESS 0.003334)  # F dt / m, 10 N/m * .01 s / 30 kg/m
+  message(FATAL_ERROR "The plate that the fluid does not see along x has ${speed} m/s.")
+endif()
+run_step("The contact model" "${simulate}" "${copy}/contact/disc.yaml" --output "${copy}/disc")
+last_value("${copy}/disc/bodies.csv" "y" height)
+last_value("${copy}/disc/bodies.csv" "contact_fy" push)
+# Its mesh is a polygon. It weighs pi R^2 g rho less a thousandth of buoyancy.
+if(NOT height GREATER 0.2995 OR NOT height LESS 0.3005 OR NOT push GREATER 307 OR NOT push LESS 308.5)
+  message(FATAL_ERROR "The disc lies at ${height} m, and the floor pushes it by ${push} N/m.")
 endif()
 
 if(HAS_MODULE)

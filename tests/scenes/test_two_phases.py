@@ -197,15 +197,33 @@ class TwoPhases(unittest.TestCase):
         self.assertLess(rise, 1)
         self.assertAlmostEqual(column(ball, "y")[-1], .76, delta=.02)
 
+    def test_a_slam_makes_no_energy(self):
+        """The film of gas below a falling plate escapes at 90 m/s and ends in water, which must not take that velocity over: it gained 589 J on
+        96 x 60 cells and 13 J on 48 x 30 in one step, where the plate has 80 J."""
+        weight = 600 * .6 * .06 * G
+        for cells in ((48, 30), (96, 60)):
+            with self.subTest(cells=cells), tempfile.TemporaryDirectory() as folder:
+                simulate(SCENES / "air-cushion.xml", folder, "--set", f"Domain/Cells={{{cells[0]}, {cells[1]}}}", "--end-time", ".14")
+                history = table(Path(folder) / "history.csv")
+                bodies = table(Path(folder) / "bodies.csv")
+                energy = [sum(pair) for pair in zip(column(history, "fluid_kinetic_energy"), column(history, "solid_kinetic_energy"))]
+                height = column(bodies, "y")
+                self.assertLess(column(bodies, "vy")[-1], 0)
+                self.assertGreater(column(bodies, "vy")[-1], -1)  # it has slammed
+                for before, after, higher, lower in zip(energy, energy[1:], height, height[1:]):
+                    self.assertLess(after - before - weight * (higher - lower), 1)
+
     def test_wind_drags_the_water_along(self):
-        """The water gains a fifth of its momentum by the wind, mean over the last of 1.5 s."""
+        """The water gains 4 % of its momentum by the wind, mean over the last of 1.5 s. It gained 19 %, and 43 % on cells half as large, while
+        what the waves flooded took over the velocity of the wind."""
         def momentum(wind):
             with tempfile.TemporaryDirectory() as folder:
                 self.shipped(folder, "wave-and-wind", "--set", "Domain/Cells={64, 32}", "--set", f"Constants/wind={wind}")
                 frames = [frame["fluid"] for frame in read_frames(folder) if frame.time > 1.15]
                 return sum(frame.values("velocity")[..., 0][frame.values("phi") < 0].sum() for frame in frames) / len(frames)
         without = momentum(0)
-        self.assertGreater(momentum(15), 1.1 * without)
+        self.assertGreater(momentum(15), 1.02 * without)
+        self.assertLess(momentum(15), 1.1 * without)
 
     def test_ranks_and_restart(self):
         text = scene(cells=32, Solids=DISC, step=.004).replace("500.6", "700.0")

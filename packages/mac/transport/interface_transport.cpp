@@ -13,6 +13,9 @@ namespace {
 constexpr double reach = 2, margin = 2;
 /// Largest sum over the axes of the displacement in a part of a step [cells].
 constexpr double largest_part = 0.5;
+/// Ratio of densities from which on a face is much denser than another one: that of a face which
+/// the interface only passes through gains less in a step.
+constexpr double much_denser = 4;
 
 double minmod(double a, double b) {
   return a * b <= 0 ? 0 : std::abs(a) < std::abs(b) ? a : b;
@@ -62,8 +65,12 @@ void InterfaceTransport<dim>::find_faces(const CellField& distance, double displ
       if (lower < 0)
         return;
       const double from_interface = std::min(std::abs(distance[cell]), std::abs(distance[lower]));
-      if (from_interface < near && is_regular(axis, cell))
+      if (from_interface >= near || geometry_.state.faces[axis][cell] == FaceState::inactive)
+        return;
+      if (is_regular(axis, cell))
         faces_.push_back({axis, cell, from_interface < taken});
+      else
+        beside_solids_.push_back({axis, cell, geometry_.face_table(axis, cell).density});
     });
 }
 
@@ -97,17 +104,23 @@ void InterfaceTransport<dim>::add_flux(const Fields& fields, const Face& face, i
   const double mass = outwards * fields.density[axis][from] * dt_ / (n_parts_ * domain_.spacing());
   change.mass -= mass;
   change.momentum -= mass * velocity;
+  if (mass < 0 &&
+      fields.density[axis][from] > much_denser * geometry_.face_table(axis, own).density) {
+    change.mass_of_denser -= mass;
+    change.momentum_of_denser -= mass * velocity;
+  }
 }
 
 template <int dim>
-void InterfaceTransport<dim>::advect(const FaceField<dim>& velocity, FaceField<dim>& result) const {
+std::vector<CarriedMass> InterfaceTransport<dim>::advect(const FaceField<dim>& velocity,
+                                                         FaceField<dim>& result) const {
   Fields fields{velocity, velocity};
   for (int axis = 0; axis < dim; ++axis) {
     for (std::size_t cell = 0; cell < velocity[axis].size(); ++cell)
       fields.density[axis][cell] = geometry_.face_table(axis, static_cast<int>(cell)).density;
     domain_.full_halo.fill(fields.velocity[axis]);
   }
-  std::vector<Change> changes(faces_.size());
+  std::vector<Change> changes(faces_.size()), sums(faces_.size());
   for (int part = 0; part < n_parts_; ++part) {
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       changes[i] = {};
@@ -122,18 +135,52 @@ void InterfaceTransport<dim>::advect(const FaceField<dim>& velocity, FaceField<d
       const double after = density + changes[i].mass;
       u = (density * u + changes[i].momentum) / after;
       density = after;
+      sums[i].mass_of_denser += changes[i].mass_of_denser;
+      sums[i].momentum_of_denser += changes[i].momentum_of_denser;
     }
     for (int axis = 0; axis < dim && part + 1 < n_parts_; ++axis) {
       domain_.full_halo.fill(fields.density[axis]);
       domain_.full_halo.fill(fields.velocity[axis]);
     }
   }
-  for (const auto& [axis, cell, is_taken] : faces_)
-    if (is_taken)
-      result[axis][cell] = fields.velocity[axis][cell];
+  std::vector<CarriedMass> carried = beside_solids_;
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const auto [axis, cell, is_taken] = faces_[i];
+    if (!is_taken)
+      continue;
+    result[axis][cell] = fields.velocity[axis][cell];
+    const double mass = sums[i].mass_of_denser;
+    carried.push_back({axis, cell, fields.density[axis][cell], mass,
+                       mass > 0 ? sums[i].momentum_of_denser / mass : 0});
+  }
+  return carried;
+}
+
+template <int dim>
+void correct_flooded(const MacGeometry<dim>& geometry, const std::vector<CarriedMass>& carried,
+                     FaceField<dim>& velocity, InvalidSamples<dim>& invalid) {
+  // Less liquid than this has a velocity of round-off [of the face's density].
+  constexpr double least = 1e-6;
+  for (const CarriedMass& face : carried) {
+    const double density = geometry.face_table(face.axis, face.cell).density;
+    if (density <= much_denser * face.density)
+      continue;
+    if (face.from_denser > least * density) {
+      velocity[face.axis][face.cell] = face.velocity_of_denser;
+      continue;
+    }
+    std::vector<char>& faces = invalid.faces[face.axis];
+    if (faces.empty())
+      faces.resize(geometry.state.faces[face.axis].size());
+    faces[face.cell] = 1;
+  }
 }
 
 template class InterfaceTransport<2>;
 template class InterfaceTransport<3>;
+template void correct_flooded<2>(const MacGeometry<2>&, const std::vector<CarriedMass>&,
+                                 FaceField<2>&, InvalidSamples<2>&);
+template void correct_flooded<3>(const MacGeometry<3>&, const std::vector<CarriedMass>&,
+                                 FaceField<3>&, InvalidSamples<3>&);
 
 }  // namespace lockstep
