@@ -44,7 +44,7 @@ class InterfaceTransport {
   /// Mass and momentum that a step's part brings to the dual cell of a face, over its volume.
   struct Change {
     double mass = 0, momentum = 0;
-    double mass_of_denser = 0, momentum_of_denser = 0;  ///< those of inflow from much denser faces
+    double mass_of_denser = 0, momentum_of_denser = 0;  ///< by inflow from much denser faces alone
   };
 
   void find_faces(const CellField& distance, double displacement);
