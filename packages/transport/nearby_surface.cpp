@@ -129,42 +129,9 @@ void NearbySurface<dim>::make_bins() {
          region.volume() / std::pow(0.5 * width, dim) < most_bins)
     width *= 0.5;
   small_simplices_ = width < 0.5 * spacing_;
-  if (small_simplices_)
-    make_patches();
   seen_.assign(images_.size(), 0);
   bins_.build(bounds_, region, lower_, width, [&](int i, const Point<dim>& center) {
     return images_[i].comes_into(center, 0.5 * width, tolerance_);
-  });
-}
-
-/// Most of a fine mesh is nearly flat over half a cell.
-template <int dim>
-void NearbySurface<dim>::make_patches() {
-  std::vector<Box<dim>> middles;
-  middles.reserve(bounds_.size());
-  for (const Box<dim>& box : bounds_) {
-    middles.emplace_back(Point<dim>(box.center()));
-    patch_reach_ = std::max(patch_reach_, 0.5 * box.sizes().maxCoeff());
-  }
-  Box<dim> region;
-  for (const Box<dim>& box : middles)
-    region.extend(box);
-  patch_bins_.build(middles, region, lower_, 0.5 * spacing_,
-                    [](int, const Point<dim>&) { return true; });
-  patches_.resize(patch_bins_.n_used());
-  patch_bins_.visit(region, [&](const auto& list) {
-    Patch& patch = patches_[list.place];
-    for (const int i : list)
-      patch.plane.normal += images_[i].plane.normal;
-    patch.plane.normal.normalize();
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const int i : list)
-      for (const Point<dim>& corner : corners(images_[i])) {
-        low = std::min(low, patch.plane(corner));
-        high = std::max(high, patch.plane(corner));
-      }
-    patch.plane.offset = 0.5 * (low + high);
-    patch.half_thickness = 0.5 * (high - low) + 3 * tolerance_;
   });
 }
 
@@ -276,7 +243,8 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
       x[a] = corners[a][k];
     return x;
   };
-  if (empty() || !reached_.contains(box)) {
+  // Walks cost by the bins on the way, the rest of this by the simplices in the box.
+  if (empty() || small_simplices_ || !reached_.contains(box)) {
     for (int k = 0; k < 1 << dim; ++k)
       hits[k] = first_hit(eye, corner(k));
     return;
@@ -287,19 +255,6 @@ void NearbySurface<dim>::look_around(const Point<dim>& eye, const Box<dim>& box,
       value += plane.normal[a] * corners[a];
     return value;
   };
-  // Walks cost by the bins on the way, the rest of this by the simplices in the box.
-  if (small_simplices_) {
-    Values clearance = Values::Constant(std::numeric_limits<double>::infinity());
-    patch_bins_.visit(widened<dim>(box, patch_reach_), [&](const auto& list) {
-      const Patch& patch = patches_[list.place];
-      const double from = patch.plane(eye), side = from < 0 ? -1 : 1;
-      clearance =
-          clearance.min((side * at_corners(patch.plane)).min(side * from) - patch.half_thickness);
-    });
-    for (int k = 0; k < 1 << dim; ++k)
-      hits[k] = clearance[k] > 0 ? std::nullopt : first_hit(eye, corner(k));
-    return;
-  }
   Values square = Values::Zero();
   for (int a = 0; a < dim; ++a)
     square += (corners[a] - eye[a]).square();

@@ -94,12 +94,6 @@ class NearbySurface {
   std::optional<SurfacePoint<dim>> first_hit(const Point<dim>& a, const Point<dim>& b) const;
 
  private:
-  /// The simplices whose middles are in one bin: all their points lie within `half_thickness` [m]
-  /// of `plane`.
-  struct Patch {
-    Plane plane;
-    double half_thickness = 0;
-  };
   struct Hit {
     std::optional<SurfacePoint<dim>> point;
     int image = -1;
@@ -109,7 +103,6 @@ class NearbySurface {
   bool is_left_out(int simplex, const Point<dim>& shift) const;
   Image picture(int simplex, const Point<dim>& shift) const;
   void make_bins();
-  void make_patches();
   /// Calls f(shift) for each period by which the surface may have to be moved to touch the box,
   /// until f returns true.
   template <typename Function>
@@ -129,9 +122,6 @@ class NearbySurface {
   std::vector<Image> images_;
   std::vector<Box<dim>> bounds_;
   bool small_simplices_ = false;  ///< bins are smaller than half a cell
-  BoxBins<dim> patch_bins_;       ///< bins of middles, half a cell wide; for small simplices alone
-  std::vector<Patch> patches_;    ///< patches of those bins
-  double patch_reach_ = 0;        ///< reach of a simplex beyond the bin of its middle [m]
   BoxBins<dim> bins_;             ///< bins of `images_`; every half cell is one or several bins
   CellDistance<dim> distance_;    ///< to `bounds_`
   mutable std::vector<unsigned> seen_;  ///< the question that each simplex last came up for
