@@ -4,9 +4,11 @@
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
+#include <optional>
 
 #include "faces/added_mass.hpp"
 #include "faces/coupling_end.hpp"
+#include "faces/share_velocities.hpp"
 #include "faces/solid_fluxes.hpp"
 #include "faces/wet_volume.hpp"
 #include "interfaces/fluid_sides.hpp"
@@ -242,17 +244,21 @@ std::vector<Momentum<dim>> FluxCoupling<dim>::prescribed_impulses(
     for (const FluxShare<dim>& share : shares_[f].all)
       if (surface_->solids()[share.solid].prescribed)
         impulses[share.solid].add(share.center, volumes_[f].direction, share.weight * of_fluid[f]);
-    add_thin_impulses(f, velocity_before[f], impulses);
+    prescribed_thin_impulses(
+        f, velocity_before[f], [&](const SurfaceShare<dim>& share, double impulse) {
+          impulses[share.solid].add(volumes_[f].center, volumes_[f].direction, impulse);
+        });
   }
   sum_over_ranks(impulses, pressure_import_->getSourceMap()->getComm());
   return impulses;
 }
 
-/// Adds the impulses of prescribed thin parts on the fluid lumped on them; where several solids
-/// share it, by their shares.
+/// The impulses of prescribed thin parts on the fluid lumped on them; where several solids share
+/// it, by their shares.
 template <int dim>
-void FluxCoupling<dim>::add_thin_impulses(std::size_t f, double velocity_before,
-                                          std::vector<Momentum<dim>>& impulses) const {
+template <typename Add>
+void FluxCoupling<dim>::prescribed_thin_impulses(std::size_t f, double velocity_before,
+                                                 const Add& add) const {
   double prescribed_share = 0;
   for (const SurfaceShare<dim>& share : shares_[f].of_thin)
     prescribed_share += surface_->solids()[share.solid].prescribed ? share.weight : 0;
@@ -260,9 +266,51 @@ void FluxCoupling<dim>::add_thin_impulses(std::size_t f, double velocity_before,
     if (!surface_->solids()[share.solid].prescribed)
       continue;
     const double gained = prescribed_thin_velocity_[f] - prescribed_share * velocity_before;
-    impulses[share.solid].add(volumes_[f].center, volumes_[f].direction,
-                              share.weight / prescribed_share * masses_[f] * gained);
+    add(share, share.weight / prescribed_share * masses_[f] * gained);
   }
+}
+
+// The surface in the cells pushes soft bodies, faces push the others; thin parts carry fluid, too.
+// Closed parts of faces along a surface make its cells' pressures: what those push on one face to
+// either side nearly cancels, and counts in the part that each cell is beside.
+template <int dim>
+std::vector<SurfaceImpulse<dim>> FluxCoupling<dim>::impulses_on_solids(
+    const SolidSystem<dim>& solids, const std::vector<double>& velocity_before,
+    const BlockVector& solution, const std::vector<double>& gas_pressure) const {
+  const auto of_sides = this->pushes_of_sides(*solution.pressure, gas_pressure);
+  std::optional<ShareVelocities<dim>> velocities;
+  if (!coupling_transposed_.is_null())
+    velocities.emplace(solids, *face_solid_import_, *solution.solid);
+  std::vector<SurfaceImpulse<dim>> impulses;
+  const auto add = [&](const auto& share, const Point<dim>& near, const Point<dim>& place,
+                       const Point<dim>& impulse) {
+    if (velocities || surface_->solids()[share.solid].prescribed)
+      impulses.push_back({this->point_near(share.point, share.solid, near), place, impulse});
+  };
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    const ControlVolume<dim>& volume = volumes_[f];
+    const Point<dim> axis = Point<dim>::Unit(volume.direction);
+    for (const FluxShare<dim>& share : shares_[f].all)
+      for (int side = 0; side < 2 && !share.at_surface; ++side)
+        add(share, volume.sides[side].center, share.center,
+            -share.weight * of_sides[f][side] * axis);
+    prescribed_thin_impulses(f, velocity_before[f],
+                             [&](const SurfaceShare<dim>& share, double impulse) {
+                               add(share, volume.center, volume.center, -impulse * axis);
+                             });
+    for (const SurfaceShare<dim>& share : shares_[f].of_thin)
+      if (velocities && !surface_->solids()[share.solid].prescribed)
+        add(share, volume.center, volume.center,
+            share.weight * masses_[f] *
+                (velocity_before[f] -
+                 velocities->along(volume.direction, share.point, volume.center)) *
+                axis);
+  }
+  const std::vector<double> of_fluid = this->pushes(*solution.pressure, gas_pressure);
+  for (std::size_t i = 0; velocities && i < flows_.size(); ++i)
+    impulses.push_back({flows_[i].point, flows_[i].point.position,
+                        -of_fluid[volumes_.size() + i] * flows_[i].area});
+  return impulses;
 }
 
 // The fluid gives to the closed part of a face at its centroid, and what is lumped on thin parts at

@@ -34,6 +34,9 @@ class FluxCoupling : public FaceCoupling<dim> {
   std::vector<Momentum<dim>> prescribed_impulses(
       const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
       const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const override;
+  std::vector<SurfaceImpulse<dim>> impulses_on_solids(
+      const SolidSystem<dim>& solids, const std::vector<double>& velocity_before,
+      const BlockVector& solution, const std::vector<double>& gas_pressure) const override;
   AngularVector<dim> lumping_torque_error(const SolidSystem<dim>& solids,
                                           const std::vector<double>& velocity_before,
                                           const std::vector<double>& velocity_after,
@@ -58,8 +61,9 @@ class FluxCoupling : public FaceCoupling<dim> {
                  RowEntries& row) const;
   void add_flow(const SurfaceFlow<dim>& flow, const SolidSystem<dim>& solids,
                 RowEntries& row) const;
-  void add_thin_impulses(std::size_t f, double velocity_before,
-                         std::vector<Momentum<dim>>& impulses) const;
+  /// Calls `add(share, impulse)` for prescribed thin parts, with their impulse on the fluid.
+  template <typename Add>
+  void prescribed_thin_impulses(std::size_t f, double velocity_before, const Add& add) const;
   void add_to_row(const std::vector<FluxShare<dim>>& shares, int direction,
                   const SolidSystem<dim>& solids, EndVelocity<dim>& row) const;
 

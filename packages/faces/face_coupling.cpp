@@ -113,21 +113,45 @@ void FaceCoupling<dim>::add_effective_divergence(const SolidSystem<dim>& solids,
 }
 
 template <int dim>
-std::vector<double> FaceCoupling<dim>::pushes(const Vector& scaled_pressure,
-                                              const std::vector<double>& gas_pressure) const {
+std::vector<double> FaceCoupling<dim>::sizes_of_pushes(
+    const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const {
   Vector beside(pressure_import_->getTargetMap());
   beside.doImport(scaled_pressure, *pressure_import_, Tpetra::INSERT);
   const auto pressure = beside.getData();
   const std::vector<double> at_nodes =
       patches_ ? patches_->extended(scaled_pressure) : std::vector<double>();
-  std::vector<double> result(prescribed_velocity_.size(), 0);
+  std::vector<double> sizes;
   for (const RowPush& one : pushes_) {
+    double pushing = 0;
     if (one.unknown != no_index)
-      result[one.row] += one.area * pressure[beside.getMap()->getLocalElement(one.unknown)];
+      pushing += pressure[beside.getMap()->getLocalElement(one.unknown)];
     if (one.patch >= 0)
-      result[one.row] += one.area * at_nodes[one.patch];
+      pushing += at_nodes[one.patch];
+    if (one.bubble >= 0 && !gas_pressure.empty())
+      pushing += gas_pressure[one.bubble];
+    sizes.push_back(one.area * pushing);
   }
-  add_pushes_of_gas(gas_pressure, result);
+  return sizes;
+}
+
+template <int dim>
+std::vector<double> FaceCoupling<dim>::pushes(const Vector& scaled_pressure,
+                                              const std::vector<double>& gas_pressure) const {
+  const std::vector<double> sizes = sizes_of_pushes(scaled_pressure, gas_pressure);
+  std::vector<double> result(prescribed_velocity_.size(), 0);
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    result[pushes_[i].row] += sizes[i];
+  return result;
+}
+
+template <int dim>
+std::vector<std::array<double, 2>> FaceCoupling<dim>::pushes_of_sides(
+    const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const {
+  const std::vector<double> sizes = sizes_of_pushes(scaled_pressure, gas_pressure);
+  std::vector<std::array<double, 2>> result(volumes_.size(), {0, 0});
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    if (pushes_[i].row < static_cast<int>(volumes_.size()))
+      result[pushes_[i].row][pushes_[i].area > 0 ? 1 : 0] += sizes[i];
   return result;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "faces/hydrostatic_force.hpp"
@@ -73,6 +74,18 @@ class FaceCoupling : public Coupling<dim>,
   /// m/s]. Collective.
   std::vector<double> pushes(const Vector& scaled_pressure,
                              const std::vector<double>& gas_pressure) const;
+  /// Impulses as in `pushes`, apart for the pressure on the lower and the upper side of each
+  /// coupled volume. Collective.
+  std::vector<std::array<double, 2>> pushes_of_sides(const Vector& scaled_pressure,
+                                                     const std::vector<double>& gas_pressure) const;
+  /// The point of a solid's surface at which an impulse counts: of a rigid solid, whose shares name
+  /// any point, the nearest to x. Local.
+  SurfacePoint<dim> point_near(const SurfacePoint<dim>& of_share, int solid,
+                               const Point<dim>& x) const {
+    return surface_->solids()[solid].rigid
+               ? surface_->closest_on_solid(surface_->beside(solid, x), solid)
+               : of_share;
+  }
   /// Momentum that the dynamic solids took in a solve: from the fluid lumped on them before, less
   /// the part lumped after it, and from pressures. Collective.
   Momentum<dim> taken_by_solids(const SolidSystem<dim>& solids,
@@ -100,6 +113,9 @@ class FaceCoupling : public Coupling<dim>,
   void add_pushed(const std::vector<double>& row_velocity, Vector& rhs) const;
   std::vector<double> gas_rates_of_rows(const std::vector<double>& row_velocity,
                                         int n_bubbles) const;
+  /// The impulse of each of `pushes_` [kg m/s]. Collective.
+  std::vector<double> sizes_of_pushes(const Vector& scaled_pressure,
+                                      const std::vector<double>& gas_pressure) const;
   /// result[f] += push of gas bubbles with these p̂, with the sign of `pushes`; empty: nothing.
   void add_pushes_of_gas(const std::vector<double>& scaled_pressure,
                          std::vector<double>& result) const;

@@ -4,9 +4,11 @@
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "base/errors.hpp"
 #include "faces/coupling_end.hpp"
+#include "faces/share_velocities.hpp"
 #include "faces/solid_fluxes.hpp"
 #include "geometry/clipping.hpp"
 #include "interfaces/fluid_sides.hpp"
@@ -170,6 +172,17 @@ std::vector<double> MixedFaceCoupling<dim>::effective_velocity(
   return result;
 }
 
+/// Impulse of all prescribed solids that share a volume on the fluid, for its velocity before, and
+/// that of the whole volume after, a solve.
+template <int dim>
+double MixedFaceCoupling<dim>::impulse_of_prescribed(std::size_t face, double before, double after,
+                                                     double push) const {
+  const double share = prescribed_share_[face];
+  const double moved =
+      options_.lumping == Lumping::consistent ? share * after : prescribed_velocity_[face];
+  return masses_[face] * (moved - share * before) + share * push;
+}
+
 // Where several prescribed solids share a volume, by their shares.
 template <int dim>
 std::vector<Momentum<dim>> MixedFaceCoupling<dim>::prescribed_impulses(
@@ -182,18 +195,54 @@ std::vector<Momentum<dim>> MixedFaceCoupling<dim>::prescribed_impulses(
   for (std::size_t f = 0; f < volumes_.size(); ++f) {
     if (prescribed_share_[f] == 0)
       continue;
-    const double share_of_all = prescribed_share_[f];
-    const double after = options_.lumping == Lumping::consistent ? share_of_all * velocity_after[f]
-                                                                 : prescribed_velocity_[f];
     const double impulse =
-        masses_[f] * (after - share_of_all * velocity_before[f]) + share_of_all * of_fluid[f];
+        impulse_of_prescribed(f, velocity_before[f], velocity_after[f], of_fluid[f]);
     for (const SurfaceShare<dim>& share : shares_[f]) {
       if (surface_->solids()[share.solid].prescribed)
         impulses[share.solid].add(volumes_[f].center, volumes_[f].direction,
-                                  share.weight / share_of_all * impulse);
+                                  share.weight / prescribed_share_[f] * impulse);
     }
   }
   sum_over_ranks(impulses, pressure_import_->getSourceMap()->getComm());
+  return impulses;
+}
+
+template <int dim>
+std::vector<SurfaceImpulse<dim>> MixedFaceCoupling<dim>::impulses_on_solids(
+    const SolidSystem<dim>& solids, const std::vector<double>& velocity_before,
+    const BlockVector& solution, const std::vector<double>& gas_pressure) const {
+  check_input(options_.lumping != Lumping::paper_diagonal,
+              "Lumping \"paper diagonal\" loses momentum and does not tell where; an observer that "
+              "asks for the force on a part of a surface needs \"diagonal\" or \"consistent\".");
+  const auto of_sides = this->pushes_of_sides(*solution.pressure, gas_pressure);
+  const std::vector<double> after = velocity(*solution.solid);
+  std::optional<ShareVelocities<dim>> velocities;
+  if (!coupling_transposed_.is_null())
+    velocities.emplace(solids, *solid_import_, *solution.solid);
+  std::vector<SurfaceImpulse<dim>> impulses;
+  for (std::size_t f = 0; f < volumes_.size(); ++f) {
+    const ControlVolume<dim>& volume = volumes_[f];
+    const double of_prescribed = impulse_of_prescribed(f, velocity_before[f], after[f], 0);
+    for (const SurfaceShare<dim>& share : shares_[f]) {
+      const bool prescribed = surface_->solids()[share.solid].prescribed;
+      if (!prescribed && !velocities)
+        continue;
+      const auto add = [&](const Point<dim>& x, double impulse) {
+        impulses.push_back({this->point_near(share.point, share.solid, x), volume.center,
+                            share.weight * impulse * Point<dim>::Unit(volume.direction)});
+      };
+      for (int side = 0; side < 2; ++side)
+        add(volume.sides[side].center, -of_sides[f][side]);
+      if (prescribed)
+        add(volume.center, -of_prescribed / prescribed_share_[f]);
+      else if (options_.lumping == Lumping::consistent)
+        add(volume.center, masses_[f] * (velocity_before[f] - after[f]));
+      else
+        add(volume.center,
+            masses_[f] * (velocity_before[f] -
+                          velocities->along(volume.direction, share.point, volume.center)));
+    }
+  }
   return impulses;
 }
 

@@ -50,6 +50,9 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   std::vector<Momentum<dim>> prescribed_impulses(
       const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
       const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const override;
+  std::vector<SurfaceImpulse<dim>> impulses_on_solids(
+      const SolidSystem<dim>& solids, const std::vector<double>& velocity_before,
+      const BlockVector& solution, const std::vector<double>& gas_pressure) const override;
   AngularVector<dim> lumping_torque_error(const SolidSystem<dim>& solids,
                                           const std::vector<double>& velocity_before,
                                           const std::vector<double>& velocity_after,
@@ -77,6 +80,7 @@ class MixedFaceCoupling : public FaceCoupling<dim> {
   }
   void add_rest(HydrostaticLoads<dim>& loads) const;
   void find_prescribed(const SolidSystem<dim>& solids);
+  double impulse_of_prescribed(std::size_t face, double before, double after, double push) const;
   void assemble_weights(const SolidSystem<dim>& solids);
 
   using FaceCoupling<dim>::added_mass_;

@@ -7,7 +7,6 @@
 #include "geometry/simplex_queries.hpp"
 #include "interfaces/solid_sides.hpp"
 #include "output/checkpoint.hpp"
-#include "parameters/suggestion.hpp"
 
 namespace lockstep {
 
@@ -79,37 +78,24 @@ CarriedPoints<dim>::CarriedPoints(std::string observer, std::string solid,
       farthest_(farthest) {}
 
 template <int dim>
-typename CarriedPoints<dim>::Carrier CarriedPoints<dim>::find_carrier(
-    const RunView<dim>& run) const {
-  std::vector<std::string> names;
-  for (const SolidModel<dim>* model : run.models) {
-    int number = 0;
-    for (const SolidDescription& solid : model->solids()) {
-      if (solid.name == solid_) {
-        check_input(
-            solid.simplex_end > solid.simplex_begin || (solid.rigid && model->jointable()),
-            "\"{}\" follows the solid \"{}\", which has no surface; name a body or a shell.",
-            observer_, solid_);
-        return {model, &solid, number};
-      }
-      names.push_back(solid.name);
-      ++number;
-    }
-  }
-  const std::string nearest = nearest_name(solid_, names);
-  throw InputError(fmt::format(
-      "\"{}\" follows the solid \"{}\", but there is none; {}", observer_, solid_,
-      nearest.empty() ? "name one of \"Solids\"." : "did you mean \"" + nearest + "\"?"));
+ObservedSolid<dim> CarriedPoints<dim>::find_carrier(const RunView<dim>& run) const {
+  const ObservedSolid<dim> carrier = observed_solid(run, solid_, observer_);
+  check_input(carrier.solid->simplex_end > carrier.solid->simplex_begin ||
+                  (carrier.solid->rigid && carrier.model->jointable()),
+              "\"{}\" follows the solid \"{}\", which has no surface; name a body or a shell.",
+              observer_, solid_);
+  return carrier;
 }
 
 template <int dim>
-void CarriedPoints<dim>::attach(const RunView<dim>& run, const Carrier& carrier) {
-  const auto& [model, solid, number] = carrier;
+void CarriedPoints<dim>::attach(const RunView<dim>& run, const ObservedSolid<dim>& carrier) {
+  const SolidModel<dim>* model = carrier.model;
+  const SolidDescription* solid = carrier.solid;
   const double most = farthest_ * run.fluid.smallest_length();
   for (const Point<dim>& x : at_start_) {
     Hold hold;
     if (solid->rigid && model->jointable()) {
-      const RigidFrame<dim> frame = model->jointable()->rigid_frame(number);
+      const RigidFrame<dim> frame = model->jointable()->rigid_frame(carrier.number);
       hold.offset = frame.orientation.inverse() * (x - frame.position);
       holds_.push_back(hold);
       continue;
@@ -133,7 +119,8 @@ void CarriedPoints<dim>::attach(const RunView<dim>& run, const Carrier& carrier)
 }
 
 template <int dim>
-CarriedPoint<dim> CarriedPoints<dim>::of_rigid(const Carrier& carrier, const Hold& hold) const {
+CarriedPoint<dim> CarriedPoints<dim>::of_rigid(const ObservedSolid<dim>& carrier,
+                                               const Hold& hold) const {
   const RigidFrame<dim> frame = carrier.model->jointable()->rigid_frame(carrier.number);
   const Point<dim> arm = frame.orientation * hold.offset;
   const AngularVector<dim> turning = frame.velocity.template tail<n_rotations<dim>>();
@@ -141,7 +128,8 @@ CarriedPoint<dim> CarriedPoints<dim>::of_rigid(const Carrier& carrier, const Hol
 }
 
 template <int dim>
-CarriedPoint<dim> CarriedPoints<dim>::of_surface(const Carrier& carrier, const Hold& hold) const {
+CarriedPoint<dim> CarriedPoints<dim>::of_surface(const ObservedSolid<dim>& carrier,
+                                                 const Hold& hold) const {
   const auto corners = corners_of<dim>(carrier.model->surface(), hold.simplex);
   SurfacePoint<dim> point;
   point.simplex = hold.simplex;
@@ -154,7 +142,7 @@ CarriedPoint<dim> CarriedPoints<dim>::of_surface(const Carrier& carrier, const H
 
 template <int dim>
 std::vector<CarriedPoint<dim>> CarriedPoints<dim>::look(const RunView<dim>& run) {
-  const Carrier carrier = find_carrier(run);
+  const ObservedSolid<dim> carrier = find_carrier(run);
   if (holds_.empty())
     attach(run, carrier);
   std::vector<CarriedPoint<dim>> points;

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "interfaces/observer.hpp"
+#include "observers/observed_solid.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
@@ -42,16 +42,10 @@ class CarriedPoints {
     Barycentric<dim> barycentric = Barycentric<dim>::Zero();
     Point<dim> offset = Point<dim>::Zero();
   };
-  /// The solid, and the model it belongs to.
-  struct Carrier {
-    const SolidModel<dim>* model = nullptr;
-    const SolidDescription* solid = nullptr;
-    int number = -1;  ///< in the model
-  };
-  Carrier find_carrier(const RunView<dim>& run) const;
-  void attach(const RunView<dim>& run, const Carrier& carrier);
-  CarriedPoint<dim> of_rigid(const Carrier& carrier, const Hold& hold) const;
-  CarriedPoint<dim> of_surface(const Carrier& carrier, const Hold& hold) const;
+  ObservedSolid<dim> find_carrier(const RunView<dim>& run) const;
+  void attach(const RunView<dim>& run, const ObservedSolid<dim>& carrier);
+  CarriedPoint<dim> of_rigid(const ObservedSolid<dim>& carrier, const Hold& hold) const;
+  CarriedPoint<dim> of_surface(const ObservedSolid<dim>& carrier, const Hold& hold) const;
 
   std::string observer_, solid_;
   std::vector<Point<dim>> at_start_;

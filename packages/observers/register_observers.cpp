@@ -2,6 +2,7 @@
 
 #include "observers/energy.hpp"
 #include "observers/flow.hpp"
+#include "observers/force.hpp"
 #include "observers/gauge.hpp"
 #include "observers/nodes.hpp"
 #include "observers/probes.hpp"
@@ -37,6 +38,9 @@ void register_observers(ObserverRegistry<dim>& observers) {
   observers.add("flow", "Volume that flows through a window, and its mean pressure.",
                 flow_parameters<dim>,
                 [](const ParameterList& list) { return std::make_unique<Flow<dim>>(list); });
+  observers.add("force", "Force and torque of the fluid on a part of a solid's surface.",
+                force_parameters<dim>,
+                [](const ParameterList& list) { return std::make_unique<Force<dim>>(list); });
   observers.add("gauge", "Wet length of a line, as a wire gauge measures it.",
                 gauge_parameters<dim>,
                 [](const ParameterList& list) { return std::make_unique<Gauge<dim>>(list); });

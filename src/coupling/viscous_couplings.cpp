@@ -23,7 +23,7 @@ std::vector<EndVelocity<dim>> ViscousCouplings<dim>::ends_of(const ViscousSystem
 template <int dim>
 ViscousCouplings<dim>::ViscousCouplings(const ViscousSystem<dim>& system,
                                         const SolidSystem<dim>& solids,
-                                        const ViscousCoupling<dim>& coupling)
+                                        const ViscousCoupling<dim>& coupling, bool with_places)
     : list_(system.links),
       ends_(ends_of(system, solids, coupling)),
       couples_(system.links, ends_, solids.solids(), solids.comm()),
@@ -38,6 +38,8 @@ ViscousCouplings<dim>::ViscousCouplings(const ViscousSystem<dim>& system,
     }
     end.dofs.clear();
     end.weights.clear();
+    if (!with_places)
+      end.shares.clear();
   }
   if (solids.has_unknowns()) {
     rows_ = assemble_triplets(std::move(rows), map_, solids.map());
@@ -135,6 +137,26 @@ Momentum<dim> ViscousCouplings<dim>::impulse(const Vector& pull, const Vector& c
     couple.add(end.position, dt * couples[l] * axis);
   }
   return couple;
+}
+
+template <int dim>
+std::vector<SurfaceImpulse<dim>> ViscousCouplings<dim>::impulses_on_solids(
+    const Vector& pull, const Vector& couple_pull, double dt) const {
+  std::vector<SurfaceImpulse<dim>> impulses;
+  const auto values = pull.getData(), couples = couple_pull.getData();
+  for (std::size_t l = 0; l < list_.size(); ++l) {
+    const EndVelocity<dim>& end = ends_[l];
+    const Point<dim> whole = dt * (values[l] + couples[l]) * Point<dim>::Unit(list_[l].direction);
+    const EndShare<dim>* prescribed = nullptr;
+    for (const EndShare<dim>& share : end.shares)
+      if (share.prescribed)
+        prescribed = &share;
+      else
+        impulses.push_back({share.point, share.pulled, share.weight * whole});
+    if (prescribed)
+      impulses.push_back({prescribed->point, end.position, end.prescribed_share * whole});
+  }
+  return impulses;
 }
 
 template class ViscousCouplings<2>;

@@ -3,6 +3,7 @@
 
 #include "coupling/solid_system.hpp"
 #include "coupling/spin_couples.hpp"
+#include "interfaces/surface_forces.hpp"
 #include "interfaces/viscosity.hpp"
 
 namespace lockstep {
@@ -12,9 +13,9 @@ namespace lockstep {
 template <int dim>
 class ViscousCouplings {
  public:
-  /// `system` must outlive it. Collective.
+  /// `system` must outlive it. `with_places`: for `impulses_on_solids`. Collective.
   ViscousCouplings(const ViscousSystem<dim>& system, const SolidSystem<dim>& solids,
-                   const ViscousCoupling<dim>& coupling);
+                   const ViscousCoupling<dim>& coupling, bool with_places = false);
 
   /// Velocities of the ends [m/s] for solid velocities V (null: none), prescribed velocities in or
   /// out. Collective.
@@ -43,6 +44,10 @@ class ViscousCouplings {
   /// part.
   Momentum<dim> impulse(const Vector& pull, const Vector& couple_pull, double dt,
                         std::vector<Momentum<dim>>& of_prescribed) const;
+  /// Impulses on all solids over dt, place by place, couples included. Where several prescribed
+  /// solids share an end, one of them has it all, as in `impulse`. This rank's part.
+  std::vector<SurfaceImpulse<dim>> impulses_on_solids(const Vector& pull, const Vector& couple_pull,
+                                                      double dt) const;
 
  private:
   static std::vector<EndVelocity<dim>> ends_of(const ViscousSystem<dim>& system,
@@ -50,7 +55,7 @@ class ViscousCouplings {
                                                const ViscousCoupling<dim>& coupling);
 
   const std::vector<ViscousCouplingTerm<dim>>& list_;
-  std::vector<EndVelocity<dim>> ends_;  ///< dofs and weights emptied once assembled
+  std::vector<EndVelocity<dim>> ends_;  ///< dofs, weights, perhaps shares emptied once assembled
   SpinCouples<dim> couples_;
   RCP<const Map> map_;            ///< links
   RCP<const CrsMatrix> rows_;     ///< L: links x solid dofs; null without unknowns

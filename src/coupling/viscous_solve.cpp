@@ -307,6 +307,7 @@ ViscousResult<dim> accept_solution(const ViscousOperator<dim>& op, const Viscous
   result.boundary_impulse += total_of(impulses);
   impulses.pop_back();
   result.prescribed_impulses = std::move(impulses);
+  result.on_surface = op.links.impulses_on_solids(*pull, *couple_pull, op.dt);
   return result;
 }
 
@@ -319,7 +320,7 @@ ViscousResult<dim> solve_viscous(const ViscousParts<dim>& parts, const ViscousRe
   const bool with_solids =
       solids.has_unknowns() &&
       sum_all(solids.comm(), static_cast<GlobalIndex>(system.links.size())) > 0;
-  const ViscousCouplings<dim> links(system, solids, coupling);
+  const ViscousCouplings<dim> links(system, solids, coupling, request.with_places);
   const ViscousOperator<dim> op{
       system,      links,
       solid_block, request.constraints,

@@ -1,6 +1,7 @@
 #pragma once
 #include "coupling/solid_system.hpp"
 #include "coupling/viscous_options.hpp"
+#include "interfaces/surface_forces.hpp"
 #include "interfaces/viscosity.hpp"
 
 namespace lockstep {
@@ -15,6 +16,8 @@ struct ViscousResult {
   /// Impulse of each prescribed solid on the fluid, part of `boundary_impulse` [kg m/s]; zero for
   /// dynamic solids. Where several share a face, one of them has it all. Global.
   std::vector<Momentum<dim>> prescribed_impulses;
+  /// Impulses of the fluid on all solids, if they were asked for. This rank's part.
+  std::vector<SurfaceImpulse<dim>> on_surface;
   /// Power that friction turns into heat at the velocities of the solution, less the power of
   /// moving sides and inflows [W]; 0 if it was not asked for.
   double dissipation = 0;
@@ -38,6 +41,7 @@ struct ViscousRequest {
   const Reduction& constraints;       ///< constraints of the solids' dofs
   const ViscousOptions& options;
   bool with_dissipation = false;
+  bool with_places = false;  ///< asks for `ViscousResult::on_surface`
 };
 
 /// Implicit viscosity over dt, coupled to the solids: conjugate gradients on

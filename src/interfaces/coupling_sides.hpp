@@ -1,6 +1,7 @@
 #pragma once
 #include "interfaces/coupling.hpp"
 #include "interfaces/prescribed_flux.hpp"
+#include "interfaces/surface_forces.hpp"
 
 namespace lockstep {
 
@@ -20,6 +21,14 @@ class AuditedCoupling {
   virtual std::vector<Momentum<dim>> prescribed_impulses(
       const std::vector<double>& velocity_before, const std::vector<double>& velocity_after,
       const Vector& scaled_pressure, const std::vector<double>& gas_pressure) const = 0;
+  /// Impulses that the fluid gave to all solids in a solve through the coupled volumes: to each
+  /// share of a volume the momentum of the fluid lumped on it before, less that after, and the
+  /// pressures beside it, each at the nearest point of the surface. Their sums are those that row 2
+  /// balances, and `prescribed_impulses`. `solution`: p̂ and V of all dofs. This rank's part.
+  /// Throws InputError if they have no places. Collective.
+  virtual std::vector<SurfaceImpulse<dim>> impulses_on_solids(
+      const SolidSystem<dim>& solids, const std::vector<double>& velocity_before,
+      const BlockVector& solution, const std::vector<double>& gas_pressure) const = 0;
   /// Returns what each prescribed solid of the system pushes into row 1, at the present time, face
   /// by face, so that a run can say whose motion closed fluid has no room for. Local.
   virtual std::vector<PrescribedFlux> solid_fluxes(const SolidSystem<dim>& solids) const = 0;

@@ -9,6 +9,7 @@
 #include "base/types.hpp"
 #include "geometry/surface_snapshot.hpp"
 #include "interfaces/momentum.hpp"
+#include "interfaces/surface_forces.hpp"
 
 namespace lockstep {
 
@@ -30,14 +31,6 @@ struct GasReport {
 struct DropsReport {
   long long n = 0;
   double volume = 0;  ///< volume of all drops; no part of the liquid's, nor of its target [m^dim]
-};
-
-/// An impulse on a surface, that of a drop that hits it.
-template <int dim>
-struct SurfaceImpulse {
-  SurfacePoint<dim> point;                  ///< point of the snapshot at the end of the step
-  Point<dim> place = Point<dim>::Zero();    ///< where it acts [m]
-  Point<dim> impulse = Point<dim>::Zero();  ///< [kg m/s]
 };
 
 /// Volume balance of the liquid. Global.

@@ -5,6 +5,7 @@
 #include "interfaces/energy.hpp"
 #include "interfaces/fluid.hpp"
 #include "interfaces/solid.hpp"
+#include "interfaces/surface_forces.hpp"
 
 namespace lockstep {
 
@@ -17,6 +18,8 @@ struct RunView {
   const EnergyBudget* energy =
       nullptr;  ///< budget of the step; null: there was none, or no observer wants it
   std::vector<const SolidModel<dim>*> models = {};  ///< models of the solids, one after the other
+  const SurfaceForces<dim>* forces =
+      nullptr;  ///< forces of the step; null: there was none, or no observer wants them
 };
 
 /// A column of an observer's table.
@@ -42,6 +45,8 @@ class Observer : public PlugIn {
   virtual void follow(const RunView<dim>&) {}
   /// True if runs are to keep `RunView::energy`, which costs some percent of a step. Local.
   virtual bool wants_energy() const { return false; }
+  /// True if runs are to keep `RunView::forces`. Local.
+  virtual bool wants_forces() const { return false; }
 };
 
 }  // namespace lockstep

@@ -59,6 +59,15 @@ class ViscousFluid {
                                        double dt) = 0;
 };
 
+/// The part of a viscous link's end that follows one point of a surface.
+template <int dim>
+struct EndShare {
+  double weight = 0;
+  SurfacePoint<dim> point;
+  bool prescribed = false;                 ///< its solid is
+  Point<dim> pulled = Point<dim>::Zero();  ///< where the link pulls on it [m]
+};
+
 /// Row of the dynamic solids (ids of SolidSystem's map) and the prescribed velocity at a viscous
 /// link.
 template <int dim>
@@ -70,6 +79,7 @@ struct EndVelocity {
   int prescribed_solid = -1;                 ///< one of them: the last with a share
   Point<dim> position = Point<dim>::Zero();  ///< where the link pulls on the solid [m]
   int solid = -1;                            ///< the one with the largest share
+  std::vector<EndShare<dim>> shares;         ///< weights sum to one
 };
 
 /// A side interface of couplings: the solid end of viscous couplings. A viscous fluid among solids

@@ -135,6 +135,7 @@ Simulation<dim>::Simulation(const Registries<dim>& registries, const ParameterLi
         },
         scene_, scene_options_, components_, log_);
   scene_options_.step.energy_budget = observers_.want_energy();
+  scene_options_.step.prediction.surface_forces = observers_.want_forces();
   scheme_ = std::make_unique<TimeScheme<dim>>(components_, scene_options_.step,
                                               scene_options_.time.start, timers_);
   check_names();
@@ -203,6 +204,8 @@ RunView<dim> Simulation<dim>::view(const std::vector<SolidState<dim>>& states) c
                    has_energy ? &*report_->energy : nullptr};
   for (int m = 0; m < components_.solids->n_models(); ++m)
     run.models.push_back(&components_.solids->model(m));
+  if (report_ && report_->surface_forces)
+    run.forces = &*report_->surface_forces;
   return run;
 }
 

@@ -79,6 +79,12 @@ bool ObserverTables<dim>::want_energy() const {
 }
 
 template <int dim>
+bool ObserverTables<dim>::want_forces() const {
+  return std::any_of(watches_.begin(), watches_.end(),
+                     [](const Watch& watch) { return watch.observer->wants_forces(); });
+}
+
+template <int dim>
 void ObserverTables<dim>::try_out(const ObserverRegistry<dim>& registry,
                                   const ParameterList& observers, const RunView<dim>& run) {
   Mistakes mistakes;

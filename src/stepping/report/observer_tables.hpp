@@ -27,6 +27,7 @@ class ObserverTables {
 
   bool empty() const { return watches_.empty(); }
   bool want_energy() const;  ///< any of them. Local.
+  bool want_forces() const;  ///< any of them. Local.
   /// Begins the tables with what is seen before the first step. Collective, like all below.
   void start(long long step, const RunView<dim>& run);
   /// Throws InputError if tables that are there have other columns.

@@ -7,6 +7,7 @@
 #include "interfaces/energy.hpp"
 #include "interfaces/liquid.hpp"
 #include "interfaces/strategy.hpp"
+#include "interfaces/surface_forces.hpp"
 
 namespace lockstep {
 
@@ -43,6 +44,7 @@ struct StepReport {
   /// By contacts and limits of joints on dynamic solids, per solid over dt, angular about the
   /// origin; empty: there are none.
   std::vector<Momentum<dim>> contact_impulse;
+  std::optional<SurfaceForces<dim>> surface_forces;  ///< if they were asked for
   ContactReport<dim> contact_position, contact_velocity;
   RCP<const Vector> reactions;  ///< impulses of constraints in S2, generalized; null: no unknowns
 };

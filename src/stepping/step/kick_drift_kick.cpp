@@ -62,6 +62,8 @@ StepReport<dim> joined(const StepReport<dim>& first, StepReport<dim> report) {
   report.linearisation_impulse += first.linearisation_impulse;
   add_impulses(first.hydrodynamic_impulse, report.hydrodynamic_impulse);
   add_impulses(first.contact_impulse, report.contact_impulse);
+  if (report.surface_forces)
+    *report.surface_forces += *first.surface_forces;
   const ContactReport<dim> drift = report.contact_position;
   report.contact_position = first.contact_velocity;
   report.contact_position.n_contacts =

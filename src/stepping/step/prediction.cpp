@@ -114,10 +114,11 @@ Friction<dim> Prediction<dim>::solve(const StepContext<dim>& context, const Expe
   const std::unique_ptr<ViscousSystem<dim>> viscous = sides_.viscous_fluid->viscous_system();
   Friction<dim> friction;
   friction.pressure_work = expected.work;
-  friction.viscous = solve_viscous<dim>(
-      {*viscous, *sides_.viscous_fluid, *components_.solids, *sides_.viscous_coupling, block,
-       near_null_space},
-      {row, dt, context.constraints, options_.viscous, !context.moves_positions});
+  friction.viscous =
+      solve_viscous<dim>({*viscous, *sides_.viscous_fluid, *components_.solids,
+                          *sides_.viscous_coupling, block, near_null_space},
+                         {row, dt, context.constraints, options_.viscous, !context.moves_positions,
+                          options_.surface_forces && !context.moves_positions});
   system_.hold(Teuchos::null);
   const double full_mass = viscous->mass->normInf();
   if (full_mass > 0)

@@ -10,6 +10,7 @@ struct PredictionOptions {
   ViscousOptions viscous;
   bool incremental_pressure = true;  ///< the viscous solve reads the last step's pressure
   bool rotational_pressure = true;   ///< the divergence that it leaves corrects this pressure
+  bool surface_forces = false;       ///< reports have `StepReport::surface_forces`
 };
 
 /// The impulses of explicit forces on the fluid. Zero where positions are moved.

@@ -101,8 +101,8 @@ void SolidForces<dim>::add_drops(SolidMomentum<dim>& result) const {
   const LiquidFluid<dim>* liquid = components_.fluid->liquid();
   if (!liquid || !liquid->has_drops())
     return;
-  const std::vector<SurfaceImpulse<dim>> impulses = liquid->impulses_on_solids();
-  if (impulses.empty())
+  result.hits = liquid->impulses_on_solids();
+  if (result.hits.empty())
     return;
   const SolidSystem<dim>& solids = *components_.solids;
   const SurfaceSnapshot<dim>& surface = *system_.surface();
@@ -110,7 +110,7 @@ void SolidForces<dim>::add_drops(SolidMomentum<dim>& result) const {
   {
     const auto values = given->getDataNonConst();
     VelocityRow<dim> row;
-    for (const SurfaceImpulse<dim>& hit : impulses) {
+    for (const SurfaceImpulse<dim>& hit : result.hits) {
       const int solid = surface.solid_of(hit.point.simplex);
       result.on_each[solid].add(solids.own_place(solid, hit.place), hit.impulse);
       solids.velocity_row(hit.point, hit.place, row);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coupling/coupled_system.hpp"
+#include "interfaces/surface_forces.hpp"
 #include "stepping/step/components.hpp"
 #include "stepping/step/step_context.hpp"
 
@@ -17,6 +18,7 @@ struct SolidMomentum {
   Momentum<dim> drops;        ///< impulse of drops that hit dynamic solids
   /// Impulses of that difference and of drops on every solid, prescribed ones included.
   std::vector<Momentum<dim>> on_each;
+  std::vector<SurfaceImpulse<dim>> hits;  ///< by these drops; the same on all ranks
 };
 
 /// Explicit forces on the solids: their own, those of joints at the begin of the step, the

@@ -1,6 +1,8 @@
 #include "stepping/step/step_audit.hpp"
 #include "coupling/solid_totals.hpp"
 
+#include "base/errors.hpp"
+
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
 #include <cmath>
@@ -9,8 +11,16 @@
 namespace lockstep {
 
 template <int dim>
-StepAudit<dim>::StepAudit(Components<dim>& components, CoupledSystem<dim>& system, bool with_energy)
-    : components_(components), sides_(components), system_(system) {
+StepAudit<dim>::StepAudit(Components<dim>& components, CoupledSystem<dim>& system, bool with_energy,
+                          bool with_surface_forces)
+    : components_(components),
+      sides_(components),
+      system_(system),
+      with_surface_forces_(with_surface_forces) {
+  check_input(!with_surface_forces || sides_.audited_coupling,
+              "An observer asks for the force on a part of a surface, but the coupling \"{}\" does "
+              "not tell where it pushes; take another coupling, or leave the observer out.",
+              components.coupling->name());
   if (with_energy)
     energy_.emplace(components, system);
 }
@@ -90,6 +100,8 @@ StepReport<dim> StepAudit<dim>::report(const StepContext<dim>& context,
   book_pressure(stages, report);
   if (components_.solids->has_unknowns())
     book_solids(context, stages, report);
+  if (with_surface_forces_)
+    report.surface_forces = surface_forces(stages);
   return report;
 }
 
@@ -194,6 +206,39 @@ std::vector<Momentum<dim>> StepAudit<dim>::contact_impulses(
   for (const PrescribedPush<dim>& push : motion.contact.on_prescribed)
     on_each[push.solid] += push.impulse;
   return on_each;
+}
+
+/// The impulses of the fluid on the surfaces, each at the point of the surface that is nearest.
+template <int dim>
+SurfaceForces<dim> StepAudit<dim>::surface_forces(const StageResults<dim>& stages) const {
+  const SolidSystem<dim>& solids = *components_.solids;
+  const SurfaceSnapshot<dim>& surface = *system_.surface();
+  const CoupledSolution& solution = stages.end.solution;
+  SurfaceForces<dim> forces;
+  forces.of_whole = stages.solids.on_each;
+  forces.at_places = sides_.audited_coupling->impulses_on_solids(
+      solids, solution.coupled_before, {solution.unknowns.pressure, solution.velocity},
+      solution.gas_pressure);
+  for (SurfaceImpulse<dim> pull : stages.friction.viscous.on_surface) {
+    const int solid = surface.solid_of(pull.point.simplex);
+    if (surface.solids()[solid].rigid)
+      pull.point = surface.closest_on_solid(surface.beside(solid, pull.place), solid);
+    forces.at_places.push_back(pull);
+  }
+  for (const SurfaceImpulse<dim>& hit : stages.solids.hits) {
+    const int solid = surface.solid_of(hit.point.simplex);
+    Momentum<dim> of_drop;
+    of_drop.add(solids.own_place(solid, hit.place), hit.impulse);
+    forces.of_whole[solid] -= of_drop;
+  }
+  if (is_root(solids.comm()))
+    forces.at_places.insert(forces.at_places.end(), stages.solids.hits.begin(),
+                            stages.solids.hits.end());
+  for (SurfaceImpulse<dim>& one : forces.at_places) {
+    one.point = solids.repeated().empty() ? one.point : solids.repeated().own_point(one.point);
+    one.place = solids.own_place(surface.solid_of(one.point.simplex), one.place);
+  }
+  return forces;
 }
 
 template <int dim>

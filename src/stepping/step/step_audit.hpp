@@ -24,8 +24,10 @@ struct StageResults {
 template <int dim>
 class StepAudit {
  public:
-  /// `with_energy`: it keeps the energy budget.
-  StepAudit(Components<dim>& components, CoupledSystem<dim>& system, bool with_energy);
+  /// `with_energy`: it keeps the energy budget. `with_surface_forces`: it reports where the fluid
+  /// pushes; throws InputError if the coupling does not tell.
+  StepAudit(Components<dim>& components, CoupledSystem<dim>& system, bool with_energy,
+            bool with_surface_forces);
 
   /// Momentum that changes from the last step on is transport: the geometry is frozen at the start
   /// of the run, or other dofs are unknowns, at `time`; u* = u^n.
@@ -54,11 +56,13 @@ class StepAudit {
   void book_solids(const StepContext<dim>& context, const StageResults<dim>& stages,
                    StepReport<dim>& report) const;
   std::vector<Momentum<dim>> contact_impulses(const MotionWithContacts<dim>& motion) const;
+  SurfaceForces<dim> surface_forces(const StageResults<dim>& stages) const;
   void find_errors(StepReport<dim>& report) const;
 
   Components<dim>& components_;
   ComponentSides<dim> sides_;
   CoupledSystem<dim>& system_;
+  bool with_surface_forces_;
   double cfl_ = 0;                         ///< CFL number of the present step [1]
   Momentum<dim> before_;                   ///< before forces act in the present step
   Momentum<dim> last_momentum_;            ///< at the end of the last step

@@ -29,7 +29,7 @@ StepParts<dim>::StepParts(Components<dim>& plug_ins, const StepOptions& options,
       solid_forces(components, system),
       positions(components, system, solve, stage_timers),
       advection(components, system, options.solve.tolerance),
-      audit(components, system, options.energy_budget),
+      audit(components, system, options.energy_budget, options.prediction.surface_forces),
       timers(stage_timers) {
   transport.freeze();
   audit.start(start_time);
