@@ -46,10 +46,10 @@ void declare_time(ParameterList& scene, bool has_joints) {
       "pressure gradients make of it in a step. No difference without viscosity.");
   declare_at_least(time, "Steps", 0, 0, "Stop after this many steps; 0: no limit.");
   declare(time, "Settle", false,
-          "Before the start, move rigid bodies that are free to where they float at rest in the "
-          "water as it is then, held by their springs and mooring lines; the water is filled in "
-          "around them there. Waves and inflows begin afterwards. Cloth and soft solids stay as "
-          "the scene has them.");
+          "Before the start, move all solids that are free to where they rest in the water as it "
+          "is then: rigid bodies, alone and on joints, held by their springs and mooring lines, "
+          "cloth and soft solids. The water is filled in around them there. Waves and inflows "
+          "begin afterwards.");
 }
 
 void declare_output(ParameterList& scene) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "stepping/step/time_scheme.hpp"
+#include "stepping/still_water.hpp"
 
 namespace lockstep {
 
@@ -15,124 +15,107 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int most_free = 60;
+constexpr double at_rest = 1e-8, good_enough = 1e-4;  // parts of gravity
 
-/// A coordinate of a free rigid body, by its row in the vectors of all solids.
-struct FreeRow {
+/// A coordinate of what moves rigidly: a dof of a free body, or the rate of a joint.
+struct Coordinate {
   GlobalIndex id = no_index;
-  bool turns = false;
+  double scale = 1;  ///< way of what goes farthest for a unit of it [m]
 };
+
+/// True if nodes of a model move by themselves.
+template <int dim>
+bool is_soft(const SolidModel<dim>& model) {
+  const auto& solids = model.solids();
+  return std::any_of(solids.begin(), solids.end(), [](const SolidDescription& solid) {
+    return !solid.rigid && !solid.prescribed;
+  });
+}
+
+template <int dim>
+bool has_soft(const SolidSystem<dim>& solids) {
+  for (int m = 0; m < solids.n_models(); ++m)
+    if (is_soft(solids.model(m)))
+      return true;
+  return false;
+}
+
+/// The way [m] that a unit of each dof moves a body of this radius, or a node; zero for rates of
+/// joints, which move nothing by themselves. Local.
+template <int dim>
+RCP<Vector> lengths_of_dofs(const SolidSystem<dim>& solids, double radius) {
+  constexpr int n_coordinates = dim + n_rotations<dim>;
+  const RCP<Vector> lengths = make_vector(solids.map());
+  const auto values = lengths->getDataNonConst();
+  const std::vector<Block> blocks = solids.blocks();
+  for (int m = 0; m < solids.n_models(); ++m)
+    for (int row = blocks[m].begin; row < blocks[m].end; ++row) {
+      const bool turns = (row - blocks[m].begin) % n_coordinates >= dim;
+      if (is_soft(solids.model(m)))
+        values[row] = 1;
+      else if (solids.model(m).jointable())
+        values[row] = turns ? radius : 1;
+    }
+  return lengths;
+}
+
+/// Size of a way [m]. Collective.
+double size_of(const Vector& way, const Vector& lengths) {
+  Vector sizes(way.getMap());
+  sizes.elementWiseMultiply(1, lengths, way, 0);
+  return sizes.normInf();
+}
+
+/// Collective.
+double dot_of_ways(const Vector& one, const Vector& other, const Vector& lengths) {
+  Vector sizes(one.getMap());
+  sizes.elementWiseMultiply(1, lengths, one, 0);
+  sizes.elementWiseMultiply(1, lengths, sizes, 0);
+  return sizes.dot(other);
+}
 
 /// The coordinates of all ranks. Collective.
 template <int dim>
-std::vector<FreeRow> free_rows(const SolidSystem<dim>& solids) {
-  constexpr int n_coordinates = dim + n_rotations<dim>;
+std::vector<Coordinate> coordinates_of(const SolidSystem<dim>& solids, const Vector& lengths) {
   const std::vector<Block> blocks = solids.blocks();
-  std::vector<GlobalIndex> ids, turns;
-  for (int m = 0; m < solids.n_models(); ++m) {
-    const SolidModel<dim>& model = solids.model(m);
-    if (!model.jointable())
-      continue;
-    const std::vector<GlobalIndex> locked = model.locked_dofs();
-    const auto map = model.dof_map();
-    for (int row = 0; row < static_cast<int>(map->getNodeNumElements()); ++row) {
-      if (std::find(locked.begin(), locked.end(), map->getGlobalElement(row)) != locked.end())
-        continue;
-      ids.push_back(solids.map()->getGlobalElement(blocks[m].begin + row));
-      turns.push_back(row % n_coordinates >= dim);
-    }
+  const RCP<const Vector> unknowns = solids.reduction().unknowns();
+  std::vector<GlobalIndex> ids;
+  for (int m = 0; m < solids.n_models(); ++m)
+    for (int row = blocks[m].begin; row < blocks[m].end && !is_soft(solids.model(m)); ++row)
+      if (unknowns.is_null() || unknowns->getData()[row] != 0)
+        ids.push_back(solids.map()->getGlobalElement(row));
+  std::vector<Coordinate> coordinates;
+  for (const GlobalIndex id : gather_all(solids.comm(), ids)) {
+    Vector motion(solids.map());
+    if (solids.map()->isNodeGlobalElement(id))
+      motion.replaceGlobalValue(id, 1);
+    solids.reduction().expand_change(motion);
+    const double scale = size_of(motion, lengths);
+    coordinates.push_back({id, scale > 0 ? scale : 1});
   }
-  ids = gather_all(solids.comm(), ids);
-  turns = gather_all(solids.comm(), turns);
-  std::vector<FreeRow> rows;
-  for (std::size_t i = 0; i < ids.size(); ++i)
-    rows.push_back({ids[i], turns[i] != 0});
-  return rows;
+  return coordinates;
 }
 
-/// Moves the solids from where they are, prescribed ones by nothing. Collective.
-template <int dim>
-void displace(const std::vector<FreeRow>& rows, const VectorXd& by, double time,
-              SolidSystem<dim>& solids) {
-  const RCP<Vector> way = make_vector(solids.map());
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (solids.map()->isNodeGlobalElement(rows[i].id))
-      way->replaceGlobalValue(rows[i].id, by[i]);
-  solids.move(*way, time - 1, 1);
+/// Values of coordinates, as dofs. Local.
+RCP<Vector> as_dofs(const std::vector<Coordinate>& coordinates, const VectorXd& values,
+                    const RCP<const Map>& map) {
+  const RCP<Vector> dofs = make_vector(map);
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (map->isNodeGlobalElement(coordinates[i].id))
+      dofs->replaceGlobalValue(coordinates[i].id, values[static_cast<Eigen::Index>(i)]);
+  return dofs;
 }
 
-/// The scene without what would stir the water.
-ParameterList still(ParameterList scene, int dim) {
-  const ParameterArray<double> at_rest(dim, 0.0);
-  ParameterList& fluid = scene.sublist("Fluid");
-  if (fluid.isParameter("Velocity"))
-    fluid.set("Velocity", at_rest);
-  fluid.remove("Sources", false);
-  fluid.sublist("Sources");
-  ParameterList& sides = scene.sublist("Domain").sublist("Sides");
-  for (auto it = sides.begin(); it != sides.end(); ++it) {
-    ParameterList& side = sides.sublist(sides.name(it));
-    side.set("Velocity", at_rest);
-    if (side.get<std::string>("Type") != "inflow")
-      continue;
-    side.set("Type", std::string("slip wall"));
-    for (const char* of_inflow : {"Wave", "Opening", "Smoke", "Temperature"})
-      side.remove(of_inflow, false);
-  }
-  return scene;
+/// The dofs of coordinates. Collective.
+VectorXd values_of(const std::vector<Coordinate>& coordinates, const Vector& dofs,
+                   const Communicator& comm) {
+  std::vector<double> values(coordinates.size(), 0.0);
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (const int row = dofs.getMap()->getLocalElement(coordinates[i].id); row >= 0)
+      values[i] = dofs.getData()[row];
+  sum_over_ranks(comm, values);
+  return Eigen::Map<const VectorXd>(values.data(), values.size());
 }
-
-/// Accelerations of the free coordinates from rest, with the bodies displaced from the start.
-template <int dim>
-class AtRest {
- public:
-  using Build = std::function<Components<dim>(const ParameterList&)>;
-
-  AtRest(const Build& build, const ParameterList& scene, const SceneOptions& options,
-         std::vector<FreeRow> rows)
-      : build_(build), scene_(still(scene, dim)), options_(options), rows_(std::move(rows)) {
-    constexpr double tolerance = 1e-11;
-    options_.step.solve.tolerance = std::min(options_.step.solve.tolerance, tolerance);
-    options_.step.energy_budget = false;
-  }
-
-  /// One component a row [m/s^2, rad/s^2]. Collective.
-  VectorXd acceleration(const VectorXd& displacement) const {
-    Components<dim> components = build_(scene_);
-    SolidSystem<dim>& solids = *components.solids;
-    displace(rows_, displacement, options_.time.start, solids);
-    solids.set_velocity(*make_vector(solids.map()));
-    StageTimers timers;
-    TimeScheme<dim> scheme(components, options_.step, options_.time.start, timers);
-    const FluidDiscretization<dim>& fluid = *components.fluid;
-    const double dt = 0.1 * std::sqrt(fluid.smallest_length() / fluid.gravity().norm());
-    scheme.advance(dt);
-    const RCP<const Vector> velocity = solids.velocity();
-    std::vector<double> values(rows_.size(), 0.0);
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      if (velocity->getMap()->isNodeGlobalElement(rows_[i].id))
-        values[i] = velocity->getData()[velocity->getMap()->getLocalElement(rows_[i].id)] / dt;
-    sum_over_ranks(solids.comm(), values);
-    return Eigen::Map<const VectorXd>(values.data(), values.size());
-  }
-
-  /// Differences of the accelerations by each displacement. Collective.
-  Eigen::MatrixXd derivative(const VectorXd& at, const VectorXd& here,
-                             const VectorXd& difference) const {
-    Eigen::MatrixXd result(at.size(), at.size());
-    for (int j = 0; j < at.size(); ++j) {
-      VectorXd beside = at;
-      beside[j] += difference[j];
-      result.col(j) = (acceleration(beside) - here) / difference[j];
-    }
-    return result;
-  }
-
- private:
-  const Build& build_;
-  ParameterList scene_;
-  SceneOptions options_;
-  std::vector<FreeRow> rows_;
-};
 
 /// Newton's step where all comes back, but along the acceleration where something falls: each
 /// eigenvector of the derivative by the size of its eigenvalue. Nothing along what meets no force.
@@ -167,17 +150,132 @@ double radius_of_bodies(const Components<dim>& components) {
   return std::max(0.5 * std::pow(largest, 1. / dim), 5 * components.fluid->smallest_length());
 }
 
+/// The ways to a place of rest, and how far from rest it is.
+struct Found {
+  Ways ways;
+  double least = 1e300;  ///< largest acceleration there [parts of gravity]
+  int n_tries = 0;
+};
+
+/// Newton's method on the accelerations of what moves rigidly.
 template <int dim>
-void check_can_settle(const Components<dim>& components, int n_free) {
+class RestOfBodies {
+ public:
+  RestOfBodies(const StillWater<dim>& water, const Components<dim>& components, double radius,
+               std::vector<Coordinate> coordinates)
+      : water_(water),
+        coordinates_(std::move(coordinates)),
+        scale_(coordinates_.size()),
+        gravity_(components.fluid->gravity().norm()),
+        cell_(components.fluid->smallest_length()),
+        radius_(radius) {
+    for (std::size_t i = 0; i < coordinates_.size(); ++i)
+      scale_[static_cast<Eigen::Index>(i)] = coordinates_[i].scale;
+  }
+
+  /// Collective.
+  Found find() const {
+    constexpr int most_tries = 100, most_vain = 8;
+    Found found;
+    Ways ways;
+    VectorXd here = acceleration(ways, {});
+    Eigen::MatrixXd derivative;
+    for (int n_vain = 0; found.n_tries < most_tries && n_vain < most_vain; ++found.n_tries) {
+      const double now = here.cwiseProduct(scale_).cwiseAbs().maxCoeff() / gravity_;
+      n_vain = now < found.least ? 0 : n_vain + 1;
+      if (now < found.least) {
+        found.least = now;
+        found.ways = ways;
+      }
+      if (now < at_rest)
+        break;
+      if (derivative.size() == 0)
+        derivative = derivative_at(ways, here);
+      VectorXd step = step_down(derivative, here, scale_, cell_);
+      const double length = step.cwiseProduct(scale_).cwiseAbs().maxCoeff(), most = 0.25 * radius_;
+      step *= std::min(1., most / length);
+      const VectorXd next = acceleration(ways, step, &ways);
+      const bool is_good = length < most && next.cwiseProduct(scale_).norm() <
+                                                0.2 * here.cwiseProduct(scale_).norm();
+      if (!is_good)
+        derivative.resize(0, 0);
+      here = next;
+    }
+    return found;
+  }
+
+ private:
+  /// Accelerations from rest, one a coordinate [m/s^2, rad/s^2], a step (empty: none) behind ways.
+  /// `longer`: gets the way of the step.
+  VectorXd acceleration(const Ways& ways, const VectorXd& step, Ways* longer = nullptr) const {
+    Components<dim> components = water_.with(ways);
+    SolidSystem<dim>& solids = *components.solids;
+    if (step.size() > 0) {
+      const RCP<const Vector> way =
+          water_.way_of(*as_dofs(coordinates_, step, solids.map()), solids);
+      water_.displace(*way, solids);
+      if (longer)
+        longer->push_back(way);
+    }
+    return values_of(coordinates_, *water_.acceleration(components), solids.comm());
+  }
+
+  /// Differences of the accelerations by each coordinate. Collective.
+  Eigen::MatrixXd derivative_at(const Ways& ways, const VectorXd& here) const {
+    const Eigen::Index n = here.size();
+    Eigen::MatrixXd result(n, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double difference = 1e-3 * cell_ / scale_[j];
+      result.col(j) = (acceleration(ways, difference * VectorXd::Unit(n, j)) - here) / difference;
+    }
+    return result;
+  }
+
+  const StillWater<dim>& water_;
+  std::vector<Coordinate> coordinates_;
+  VectorXd scale_;  ///< [m]
+  double gravity_, cell_, radius_;
+};
+
+/// Goes down in energy with all solids at once. Each way is that of a step from rest, longer and
+/// longer ones. Where forces are not implicit, as those of water are not, too long a step goes too
+/// far: the next way goes back, and steps get shorter. Collective.
+template <int dim>
+Found relax(const StillWater<dim>& water, const Components<dim>& components,
+            const Vector& lengths) {
+  constexpr int most_tries = 300;
+  const double gravity = components.fluid->gravity().norm();
+  const double cell = components.fluid->smallest_length();
+  const double usual = std::sqrt(cell / gravity), most = 0.5 * cell;
+  double dt = usual;
+  Found found;
+  for (; found.n_tries < most_tries; ++found.n_tries) {
+    Components<dim> here = water.with(found.ways);
+    const RCP<Vector> way = water.way_down(here, dt);
+    const double length = size_of(*way, lengths);
+    const bool goes_back =
+        !found.ways.empty() && dot_of_ways(*way, *found.ways.back(), lengths) < 0;
+    if (length > most)
+      way->scale(most / length);
+    found.ways.push_back(way);
+    if (length < at_rest * cell)
+      break;
+    dt =
+        goes_back || length > most ? std::max(dt / 2, usual / 16) : std::min(1.5 * dt, 100 * usual);
+  }
+  Components<dim> there = water.with(found.ways);
+  found.least = size_of(*water.acceleration(there), lengths) / gravity;
+  return found;
+}
+
+template <int dim>
+void check_can_settle(const Components<dim>& components, std::size_t n_free) {
   check_input(components.fluid->gravity().norm() > 0,
               "\"Time/Settle\" brings bodies to rest in water, but there is no gravity; leave it "
               "out, or give \"Fluid\" its \"Gravity\".");
-  check_input(components.solids->joints() == nullptr,
-              "\"Time/Settle\" does not know joints: bodies of a mechanism cannot be moved one by "
-              "one. Leave it out.");
-  check_input(n_free <= most_free,
-              "\"Time/Settle\" has to try all {} coordinates of the free bodies, more than {}; "
-              "leave it out.",
+  check_input(n_free <= most_free || has_soft(*components.solids),
+              "\"Time/Settle\" has to try all {} coordinates of the free bodies and joints, more "
+              "than {}; leave it out.",
               n_free, most_free);
 }
 
@@ -200,57 +298,33 @@ template <int dim>
 void settle(const std::function<Components<dim>(const ParameterList&)>& build,
             const ParameterList& scene, const SceneOptions& options, Components<dim>& components,
             const Log& log) {
-  const std::vector<FreeRow> rows = free_rows(*components.solids);
-  const int n = static_cast<int>(rows.size());
-  check_can_settle(components, n);
-  if (n == 0)
+  SolidSystem<dim>& solids = *components.solids;
+  const double radius = radius_of_bodies(components);
+  const RCP<const Vector> lengths = lengths_of_dofs(solids, radius);
+  const std::vector<Coordinate> coordinates = coordinates_of(solids, *lengths);
+  check_can_settle(components, coordinates.size());
+  if (!solids.has_unknowns())
     return;
-  const AtRest<dim> water(build, scene, options, rows);
-  const double gravity = components.fluid->gravity().norm();
-  const double cell = components.fluid->smallest_length(), radius = radius_of_bodies(components);
-  VectorXd scale(n);  // unit of each coordinate [m]
-  for (int i = 0; i < n; ++i)
-    scale[i] = rows[i].turns ? radius : 1;
-  constexpr double at_rest = 1e-8, good_enough = 1e-4;  // parts of gravity
-  constexpr int most_tries = 100, most_vain = 8;
-  VectorXd at = VectorXd::Zero(n), here = water.acceleration(at), best = at;
-  double least = 1e300;
-  Eigen::MatrixXd derivative;
-  int n_tries = 0;
-  for (int n_vain = 0; n_tries < most_tries && n_vain < most_vain; ++n_tries) {
-    const double now = here.cwiseProduct(scale).cwiseAbs().maxCoeff() / gravity;
-    n_vain = now < least ? 0 : n_vain + 1;
-    if (now < least) {
-      least = now;
-      best = at;
-    }
-    if (now < at_rest)
-      break;
-    if (derivative.size() == 0)
-      derivative = water.derivative(at, here, 1e-3 * cell * scale.cwiseInverse());
-    VectorXd step = step_down(derivative, here, scale, cell);
-    const double length = step.cwiseProduct(scale).cwiseAbs().maxCoeff(), most = 0.25 * radius;
-    step *= std::min(1., most / length);
-    at += step;
-    const VectorXd next = water.acceleration(at);
-    const bool is_good =
-        length < most && next.cwiseProduct(scale).norm() < 0.2 * here.cwiseProduct(scale).norm();
-    if (!is_good)
-      derivative.resize(0, 0);
-    here = next;
-  }
-  check_solve(least < good_enough,
+  const StillWater<dim> water(build, scene, options);
+  const Found found = has_soft(solids)
+                          ? relax(water, components, *lengths)
+                          : RestOfBodies<dim>(water, components, radius, coordinates).find();
+  check_solve(found.least < good_enough,
               "\"Time/Settle\" finds no rest: after {} tries a body still sets out with {:.3g} "
-              "times gravity. Begin nearer to rest, or leave it out.",
-              n_tries, least);
-  if (least > at_rest)
-    log.warning("Settle: after {} tries bodies still set out with {:.2g} times gravity.", n_tries,
-                least);
-  const std::vector<SolidState<dim>> before = components.solids->states();
-  displace(rows, best, options.time.start, *components.solids);
-  components.solids->set_velocity(
-      *components.solids->velocity());  // the momenta of turned bodies follow
-  report(before, components.solids->states(), n_tries, log);
+              "times gravity. Begin nearer to rest, {}or leave it out.",
+              found.n_tries, found.least,
+              has_soft(solids) ? "take the coupling \"flux\", under which forces on soft solids "
+                                 "jump less between cells, "
+                               : "");
+  if (found.least > at_rest)
+    log.warning("Settle: after {} tries bodies still set out with {:.2g} times gravity.",
+                found.n_tries, found.least);
+  const std::vector<SolidState<dim>> before = solids.states();
+  const RCP<const Vector> velocity = solids.velocity();
+  for (const RCP<const Vector>& way : found.ways)
+    water.displace(*way, solids);
+  solids.set_velocity(*velocity);  // the momenta of turned bodies follow
+  report(before, solids.states(), found.n_tries, log);
 }
 
 template void settle<2>(const std::function<Components<2>(const ParameterList&)>&,
