@@ -66,7 +66,7 @@ class TextLines {
   double number(const std::string& word) const {
     char* end = nullptr;
     const double value = std::strtod(word.c_str(), &end);
-    const bool whole = end != word.c_str() && *end == '\0';
+    const bool whole = !word.empty() && end == word.c_str() + word.size();
     const bool decimal = word.find_first_of("xXpP") == std::string::npos;
     check_input(whole && decimal, "{}: expected a number, but found '{}'.", where(),
                 shortened(word));
@@ -80,8 +80,8 @@ class TextLines {
     char* end = nullptr;
     errno = 0;
     const long value = std::strtol(part.c_str(), &end, 10);
-    check_input(end != part.c_str() && *end == '\0', "{}: expected a whole number, but found '{}'.",
-                where(), shortened(word));
+    check_input(!part.empty() && end == part.c_str() + part.size(),
+                "{}: expected a whole number, but found '{}'.", where(), shortened(word));
     check_input(errno == 0 && std::abs(value) <= std::numeric_limits<int>::max(),
                 "{}: the number '{}' is too large.", where(), shortened(word));
     return value;

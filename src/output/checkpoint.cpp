@@ -197,7 +197,6 @@ void CheckpointWriter::write_distributed(const std::string& name,
     failure = fmt::format("has number {} twice", *twice);
   fail_together();
   file_.create_group(name);
-  file_.write_attribute<long long>(name, "n_components", n_components);
   file_.write_slices(name + "/ids", part.ids);
   file_.write_slices(name + "/values", part.values, n_components);
 }

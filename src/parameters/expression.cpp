@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "base/errors.hpp"
@@ -59,9 +60,9 @@ void for_each_name(const std::string& formula, const Function& f) {
   };
   for (std::size_t begin = 0; begin < formula.size();) {
     if (is_digit(begin) || (formula[begin] == '.' && is_digit(begin + 1))) {
-      std::size_t end = 0;
-      std::stod(formula.substr(begin), &end);
-      begin += end;
+      char* end = nullptr;  // std::stod throws where no double can hold the number
+      std::strtod(formula.c_str() + begin, &end);
+      begin = end - formula.c_str();
     } else if (std::strchr(name_characters, formula[begin]) != nullptr) {
       const std::size_t end = formula.find_first_not_of(name_characters, begin);
       f(begin, std::min(end, formula.size()));

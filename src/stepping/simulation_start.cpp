@@ -86,6 +86,8 @@ void Simulation<dim>::load_checkpoint() {
   checkpoint.check(last_dt_ >= 0, fmt::format("its last step is {} s long", last_dt_));
   if (checkpoint.file().has_attribute("/", "last frame"))  // older ones say nothing of it
     last_frame_ = checkpoint.file().read_attribute<double>("/", "last frame");
+  checkpoint.check(last_frame_ <= checkpoint.header().time,
+                   fmt::format("its last frame is of {} s, after its own time", last_frame_));
   scheme_->resume(checkpoint.header().time, step_, last_dt_);
 }
 

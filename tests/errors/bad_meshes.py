@@ -88,6 +88,8 @@ CASES = [
          **mesh(TETRAHEDRON.replace("v 1 0 0", "v 1e999 0 0"))),
     Case("a hexadecimal coordinate", ["body.obj, line 2", "'0x10'"],
          **mesh(TETRAHEDRON.replace("v 1 0 0", "v 0x10 0 0"))),
+    Case("a coordinate that a zero byte ends", ["body.obj, line 2", "expected a number"],
+         **mesh(TETRAHEDRON.replace("v 1 0 0", "v 1\0 0 0"))),
     Case("a vertex without number", ["body.obj, line 5", "'/1'"], **mesh(TETRAHEDRON.replace("f 1 3 2", "f /1 3 2"))),
     Case("a huge vertex number", ["body.obj, line 5", "'99999999999999999999'"],
          **mesh(TETRAHEDRON.replace("f 1 3 2", "f 1 3 99999999999999999999"))),

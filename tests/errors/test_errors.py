@@ -207,6 +207,8 @@ CASES = [
     Case("a solver file that is not there", ["none.xml", "Cannot read"], sets=["Solver/File=none.xml"]),
     Case("a decimal comma in a formula", ["line", "\"1000*0,5\" is 2 numbers"],
          change=(DENSITY, value("Density", "double", "[1000*0,5]"))),
+    Case("a number that no double can hold in a formula", ["cannot evaluate \"500*1e999\"", "1e999"],
+         change=(DENSITY, value("Density", "double", "[500*1e999]"))),
     Case("no plug-in", "\"Type\"", change=(BODY_TYPE, "")),
     Case("no dimension", ["\"Dimension\"", "required"], change=(DIMENSION, "")),
     Case("one dimension", ["\"Dimension\" is 1", "2 or 3"], change=(DIMENSION, value("Dimension", "int", "1"))),

@@ -309,9 +309,12 @@ class Faults(unittest.TestCase):
             "too many particles": dataset(counts, one(2 ** 40)),
             "fewer particles than none": dataset(counts, one(-6)),
             "a cell of no kind": dataset("fluid/cells_with_pressure/values", one(77)),
+            "a cell between two kinds": dataset("fluid/cells_with_pressure/values", one(.5)),
             "half a body": dataset("rigid bodies/values", lambda values: values[:3]),
             "a negative step": lambda file: file.attrs.__setitem__("step", -3),
             "a step that took less than no time": lambda file: file.attrs.__setitem__("last dt", -.1),
+            "a frame that is yet to come": lambda file: file.attrs.__setitem__("last frame", 1e12),
+            "a step of the fluid that took less than no time": lambda file: file["fluid"].attrs.__setitem__("last_step", -.1),
         }
         ball = {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .2}, "Density": 500., "Position": (.5, .5)}
         water = xml("Scene", {

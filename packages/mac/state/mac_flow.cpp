@@ -159,7 +159,7 @@ void MacFlow<dim>::load(const CheckpointReader& checkpoint) {
   CellField cells(domain.grid.n_stored_cells(), static_cast<double>(CellState::outside));
   load_fields(domain, {{"cells_with_pressure", {&cells}}}, checkpoint);
   const auto is_state = [](double state) {
-    return state >= 0 && state <= static_cast<double>(CellState::air);
+    return state >= 0 && state <= static_cast<double>(CellState::air) && state == std::floor(state);
   };
   checkpoint.check(std::all_of(cells.begin(), cells.end(), is_state),
                    "the kinds of its cells cannot be");
@@ -168,6 +168,8 @@ void MacFlow<dim>::load(const CheckpointReader& checkpoint) {
     accepted_cells[cell] = static_cast<CellState>(static_cast<int>(cells[cell]));
   time = checkpoint.file().read_attribute<double>("fluid", "boundary_time");
   last_step = checkpoint.file().read_attribute<double>("fluid", "last_step");
+  checkpoint.check(last_step >= 0,
+                   fmt::format("the last step of its fluid is {} s long", last_step));
   accepted_step = last_step;
   const auto gravity_time = checkpoint.file().read_attribute<double>("fluid", "gravity_time");
   checkpoint.check(std::isfinite(gravity_time), "the time of its gravity cannot be");
