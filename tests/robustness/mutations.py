@@ -6,7 +6,8 @@
   tests/robustness/mutations.py --mutations 17 --print             what that one does, and where its files are
 
 A mutation's number decides all of it. A program must end with 0, 2, 3 or 4, in time and by no signal; with one
-message of its own if not 0; with nothing written if 2; and what it wrote can be read and is finite.
+message of its own if not 0; with nothing written if 2; and what it wrote can be read and is finite. What damage left is
+judged by readers of our own (meaning.py): a file that must be refused may not be taken in silence, nor a whole one refused.
 """
 import argparse
 import collections
@@ -20,12 +21,14 @@ import shutil
 import sys
 import tempfile
 import time
+import typing
 from pathlib import Path
 
 import h5py
 import numpy
 
 import hand_written
+import meaning
 import mesh_files
 import mutators
 import report
@@ -35,7 +38,7 @@ from runs import program, read_table, run
 from scenes import random_scene
 
 SOURCE = Path(__file__).resolve().parents[2]
-NOISE = re.compile(r"Unexpected failure|terminate called|HDF5-DIAG|Throw number|Assertion|Segmentation|MPI_ABORT")
+NOISE = re.compile(r"Unexpected failure|terminate called|HDF5-DIAG|Throw number|Assertion|Segmentation|MPI_ABORT|Please report")
 
 
 @dataclasses.dataclass
@@ -45,6 +48,7 @@ class Case:
     damaged: str
     command: list
     mutators: list
+    judge: typing.Callable = None  # takes the bytes before and after, see meaning.py
 
 
 def scene_files(scene):
@@ -71,20 +75,34 @@ def soft_ball(**lists):
 
 def scene_case(rng):
     scene = random_scene(1000 * rng.randrange(6) + rng.randrange(200))  # all kinds: full tanks, water, joints, gas...
-    return Case(scene_files(scene), "scene.xml", [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.XML)
+    return Case(scene_files(scene), "scene.xml", [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.XML,
+                meaning.judge_parameters)
+
+
+def shipped_scene_case(rng):
+    """A scene of xml-params/scenes beside the files that it names."""
+    path = rng.choice(sorted((SOURCE / "xml-params/scenes").glob("*.xml")))
+    text = path.read_text()
+    others = [path.parent / name for name in re.findall(r'"File" type="string" value="([^"]+)"', text)]
+    others += [path.parent / name for name in re.findall(r'"Include" type="string" value="([^"]+)"', text)]
+    files = {other.name: other.read_bytes() for other in others}
+    return Case({"scene.xml": re.sub(r'"\.\./\w+/', '"', text).encode(), **files}, "scene.xml",
+                [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.XML, meaning.judge_parameters)
 
 
 def hand_written_case(rng):
     """Constants, formulas, defaults, copies and an included file."""
     files = {"scene.xml": hand_written.SCENE.encode(), "base.xml": hand_written.BASE.encode()}
     return Case(files, rng.choice(["scene.xml", "base.xml", "base.xml"]),
-                [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.XML)
+                [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.XML,
+                meaning.judge_parameters)
 
 
 def run_case(rng):
     content = rng.choice([ball(), soft_ball(), {**soft_ball(), "Coupling": {"Type": "flux"}}])
     return Case({"scene.xml": to_xml("Scene", content).encode()}, "scene.xml",
-                [program("simulate"), "scene.xml", "--quiet", "--output", "output"], mutators.XML)
+                [program("simulate"), "scene.xml", "--quiet", "--output", "output"], mutators.XML,
+                meaning.judge_parameters)
 
 
 def solver_case(rng):
@@ -126,7 +144,8 @@ def mesh_case(rng):
         body = {"Type": "rigid body", "Geometry": geometry}
     content = small_scene(body, dimension)
     return Case({"scene.xml": to_xml("Scene", content).encode(), f"mesh.{extension}": text.encode()}, f"mesh.{extension}",
-                [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.TEXT)
+                [program("simulate"), "scene.xml", "--validate", "--quiet"], mutators.TEXT,
+                functools.partial(meaning.judge_mesh, extension))
 
 
 def water(**surface):
@@ -176,7 +195,7 @@ def checkpoint_case(rng):
     scene, checkpoint, _ = checkpoint_and_system(rng.choice(["rigid", "soft"]))
     return Case({"scene.xml": scene, "checkpoint.h5": checkpoint}, "checkpoint.h5",
                 [program("simulate"), "scene.xml", "--quiet", "--output", "output", "--restart", "checkpoint.h5", "--steps",
-                 "3"], mutators.HDF5)
+                 "3"], mutators.HDF5, meaning.judge_bytes)
 
 
 def checkpoint_content_case(rng):
@@ -184,7 +203,7 @@ def checkpoint_content_case(rng):
     scene, checkpoint, _ = checkpoint_and_system(rng.choice(["rigid", "soft", "joints", "gas", "gas", "particles", "fractions"]))
     return Case({"scene.xml": scene, "checkpoint.h5": checkpoint}, "checkpoint.h5",
                 [program("simulate"), "scene.xml", "--quiet", "--output", "output", "--restart", "checkpoint.h5", "--steps",
-                 "4"], mutators.RESEALED_HDF5)
+                 "4"], mutators.RESEALED_HDF5, meaning.judge_sealed_again)
 
 
 def system_case(rng):
@@ -192,12 +211,12 @@ def system_case(rng):
     solver = rng.choice(["schur-cg", "paper", "direct", "pressure-schur"])
     return Case({"system.h5": system}, "system.h5",
                 [program("solve"), "system.h5", SOURCE / f"xml-params/solvers/{solver}.xml", "--output", "output"],
-                mutators.HDF5)
+                mutators.HDF5, meaning.judge_system)
 
 
-KINDS = [("scene, validated", scene_case, 7), ("scene, by hand", hand_written_case, 3), ("scene, run", run_case, 4),
-         ("solver", solver_case, 3), ("study", study_case, 3), ("mesh", mesh_case, 7), ("checkpoint", checkpoint_case, 4),
-         ("system", system_case, 4), ("checkpoint, sealed again", checkpoint_content_case, 0)]  # 0: only by --kind
+KINDS = [("shipped scene", shipped_scene_case, 14), ("random scene", scene_case, 4), ("scene by hand", hand_written_case, 3),
+         ("scene, run", run_case, 3), ("solver", solver_case, 3), ("study", study_case, 3), ("mesh", mesh_case, 5),
+         ("checkpoint", checkpoint_case, 5), ("checkpoint, sealed again", checkpoint_content_case, 4), ("system", system_case, 4)]
 
 
 def non_finite(folder):
@@ -221,7 +240,7 @@ def non_finite(folder):
     return ""
 
 
-def failure_of(case, result, folder):
+def failure_of(case, result, folder, verdict):
     """Returns the fault in how a program ended; empty if there is none."""
     if result.timed_out or result.code < 0:
         return result.failure()
@@ -242,6 +261,10 @@ def failure_of(case, result, folder):
         return f"exit code 2, but {created} was written"
     if any(folder.rglob("*.part")):
         return "a part of a file is left"
+    if result.code == 0 and verdict == meaning.MUST:
+        return "taken in silence"
+    if result.code != 0 and verdict == meaning.NOT:
+        return "refused, though it says what it said before"
     try:
         return non_finite(folder / "output")
     except Exception as error:
@@ -257,6 +280,12 @@ class Mutation:
     failure: str
     message: str
     core_seconds: float
+    left: str = ""  # by the damage, in the words of meaning.py; nothing if that is not judged
+    verdict: str = meaning.MAY
+
+
+def judged(case, before):
+    return case.judge(before, case.files[case.damaged]) if case.judge else ("", meaning.MAY)
 
 
 def try_mutation(number, arguments):
@@ -264,7 +293,9 @@ def try_mutation(number, arguments):
     kinds = [kind for kind in KINDS for _ in range(kind[2])]
     kind, make, _ = kinds[number % len(kinds)] if not arguments.kind else next(k for k in KINDS if k[0] == arguments.kind)
     case = make(rng)
-    case.files[case.damaged], how = mutators.mutated(rng, case.files[case.damaged], case.mutators)
+    before = case.files[case.damaged]
+    case.files[case.damaged], how = mutators.mutated(rng, before, case.mutators)
+    left, verdict = judged(case, before)
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         for name, data in case.files.items():
@@ -272,7 +303,7 @@ def try_mutation(number, arguments):
         names = {*case.files, "output"}
         command = [folder / word if word in names else word for word in case.command]
         result = run(command, arguments.timeout)
-        failure = failure_of(case, result, folder)
+        failure = failure_of(case, result, folder, verdict)
         if failure and arguments.keep:
             kept = Path(arguments.keep) / str(number)
             shutil.rmtree(kept, ignore_errors=True)
@@ -281,7 +312,7 @@ def try_mutation(number, arguments):
                 (kept / name).write_bytes(data)
             command = [Path(word).name if word in names else str(word) for word in case.command]
             (kept / "failure.txt").write_text(f"{' '.join(command)}\n{kind}, {how}\n{failure}\n{result.errors}")
-        return Mutation(number, kind, how, result.code, failure, result.errors.strip(), result.core_seconds)
+        return Mutation(number, kind, how, result.code, failure, result.errors.strip(), result.core_seconds, left, verdict)
 
 
 def main():
@@ -299,7 +330,7 @@ def main():
         for mutation in pool.map(lambda number: try_mutation(number, arguments), arguments.mutations):
             results.append(mutation)
             if mutation.failure or arguments.print:
-                print(f"mutation {mutation.number}: {mutation.kind}, {mutation.how}: "
+                print(f"mutation {mutation.number}: {mutation.kind}, {mutation.how}, {mutation.left}: "
                       f"{mutation.failure or mutation.code}: {mutation.message[:300]}", flush=True)
     n_failed = sum(bool(mutation.failure) for mutation in results)
     codes = collections.Counter(mutation.code for mutation in results)
