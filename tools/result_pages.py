@@ -60,7 +60,7 @@ TOOL_PAGES = {
     "presets": Tool(["tools/compare-presets"], [], ["xml-params/presets", "xml-params/studies", "tools/compare-presets", "packages"]),
     "ranks": Tool(["tools/measure-ranks"], [f"{STUDIES}/step-cost-scene.xml"], ["tests/benchmarks/mpi_counter.cpp"]),
     "robustness": Tool(["tests/robustness/random_scenes.py --seeds 0-999 --quick --report docs/results/robustness.md",
-                        "tests/robustness/mutations.py --mutations 0-6999 --report docs/results/robustness.md"],
+                        "tests/robustness/mutations.py --mutations 0-5399 --report docs/results/robustness.md"],
                        ["xml-params/scenes/*.xml"], ["tests/robustness", "drivers", "packages"]),
     "scenes": Tool(["tools/measure-scenes --against OTHER/simulate"], ["xml-params/scenes/*.xml", f"{STUDIES}/soft-cost-scene.xml"],
                    ["tools/solver_cases.py"], by_hand=OTHER_PROGRAM),

@@ -214,7 +214,7 @@ def system_case(rng):
                 mutators.HDF5, meaning.judge_system)
 
 
-KINDS = [("shipped scene", shipped_scene_case, 14), ("random scene", scene_case, 4), ("scene by hand", hand_written_case, 3),
+KINDS = [("shipped scene", shipped_scene_case, 20), ("random scene", scene_case, 4), ("scene by hand", hand_written_case, 3),
          ("scene, run", run_case, 3), ("solver", solver_case, 3), ("study", study_case, 3), ("mesh", mesh_case, 5),
          ("checkpoint", checkpoint_case, 5), ("checkpoint, sealed again", checkpoint_content_case, 4), ("system", system_case, 4)]
 
