@@ -45,6 +45,23 @@ f 5 6 8
 f 5 8 7
 f 6 7 8
 """
+TWO_TETRAHEDRA = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+5
+1 0 0 0
+2 .3 0 0
+3 0 .3 0
+4 0 0 .3
+5 .3 .3 .3
+$EndNodes
+$Elements
+2
+1 4 2 0 0 1 2 3 4
+2 4 2 0 0 2 3 4 5
+$EndElements
+"""
 BOW_TIE = """v 0 0 0
 v .4 .2 0
 v .4 0 0
@@ -118,5 +135,8 @@ CASES = [
     Case("a block of more nodes than bytes", ["body.msh, line 6", "2000000000 entries", "damaged"],
          scene=SOFT_SCENE_3D, change=(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.msh")),
          files=[("body.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 2000000000 1 2000000000\n3 1 0 2000000000\n")]),
+    Case("an element of more corners than its type has", ["body.msh, line 15", "element 24 of Gmsh type 2 has 5 corners, but must have 3"],
+         scene=SOFT_SCENE_3D, change=(GEOMETRY, value("Shape", "string", "file") + value("File", "string", "body.msh")),
+         files=[("body.msh", TWO_TETRAHEDRA.replace("2 4 2 0 0", "24 2 0 0"))]),
     Case("a mesh that is no mesh", "OFF", **mesh("solid", "body.off")),
 ]

@@ -1,5 +1,6 @@
 #include "deformable/mesh/gmsh_file.hpp"
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <unordered_map>
@@ -14,6 +15,12 @@ namespace {
 /// Gmsh's number of the linear simplex with so many corners.
 constexpr int simplex_type(int n_corners) {
   return n_corners == 2 ? 1 : n_corners == 3 ? 2 : 4;
+}
+
+/// Corners of Gmsh's elements of first order; 0: no such type.
+int corners_of(long type) {
+  constexpr std::array<int, 8> corners = {0, 2, 3, 4, 4, 8, 6, 5};
+  return type == 15 ? 1 : type > 0 && type < 8 ? corners[type] : 0;
 }
 
 /// Reads one file; `tags` are Gmsh's node numbers, which need not be consecutive.
@@ -130,17 +137,19 @@ class GmshReader {
   }
 
   void add_element(long tag, long type, std::size_t first_word) {
-    check_input(type <= 7 || type == 15,
-                "{}: element {} is of Gmsh type {}, of higher order; save a mesh of order 1.",
+    check_input(corners_of(type) > 0,
+                "{}: element {} is of Gmsh type {}, not of first order; save a mesh of order 1.",
                 lines_.where(), tag, type);
+    const long n_found = static_cast<long>(words_.size()) - static_cast<long>(first_word);
+    check_input(n_found == corners_of(type),
+                "{}: element {} of Gmsh type {} has {} corners, but must have {}.", lines_.where(),
+                tag, type, n_found, corners_of(type));
     const bool too_rich =
         (n_corners >= 3 && type == 3) || (n_corners == 4 && type >= 5 && type < 8);
     check_input(!too_rich, "{}: element {} is no simplex (Gmsh type {}); make a mesh of {} only.",
                 lines_.where(), tag, type, n_corners == 4 ? "tetrahedra" : "triangles");
     if (type != simplex_type(n_corners))
       return;
-    check_input(words_.size() >= first_word + n_corners, "{}: element {} has too few corners.",
-                lines_.where(), tag);
     std::array<int, n_corners> corners;
     for (int k = 0; k < n_corners; ++k) {
       const long node = lines_.integer(words_[first_word + k]);
