@@ -111,7 +111,7 @@ def solver_case(rng):
     validate = [program("simulate"), "scene.xml", "--validate", "--quiet"]
     solve = [program("solve"), SOURCE / "tests/data/light-disc.h5", "solver.xml"]
     return Case({"scene.xml": to_xml("Scene", content).encode(), "solver.xml": solver.read_bytes()}, "solver.xml",
-                rng.choice([validate, validate, solve]), mutators.XML)
+                rng.choice([validate, validate, solve]), mutators.XML, meaning.judge_parameters)
 
 
 STUDY = {"Title": "A study", "Scene": "scene.xml",
@@ -127,7 +127,7 @@ def study_case(rng):
     """Mostly only the list of its cases."""
     how = ["--list"] if rng.random() < 0.9 else ["--rungs", "1:1", "--series", "heavy", "--simulate", program("simulate")]
     return Case({"scene.xml": to_xml("Scene", ball()).encode(), "study.xml": to_xml("Study", STUDY).encode()}, "study.xml",
-                [program("converge"), "study.xml", "--output", "output", *how], mutators.XML)
+                [program("converge"), "study.xml", "--output", "output", *how], mutators.XML, meaning.judge_parameters)
 
 
 def mesh_case(rng):

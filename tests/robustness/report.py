@@ -174,7 +174,7 @@ def left_rows(results):
     groups = collections.defaultdict(collections.Counter)
     for mutation in results:
         if mutation.left:
-            group = next((name for name in ("scene", "mesh", "system") if name in mutation.kind), "checkpoint")
+            group = next(name for name in ("scene", "solver", "study", "mesh", "checkpoint", "system") if name in mutation.kind)
             groups[group, mutation.left, mutation.verdict][mutation.code == 0] += 1
     order = sorted(groups, key=lambda key: (key[0], {"must": 0, "may": 1}[key[2].split()[0]], "not" in key[2], key[1]))
     return [[*key, groups[key][False], groups[key][True]] for key in order]
