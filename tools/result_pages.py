@@ -41,6 +41,7 @@ class Tool:
 OTHER_PROGRAM = "it compares with another program: choose one, and name it with --against"
 TOOL_PAGES = {
     "contact-rest": Tool(["tools/measure-rest"], [], ["tests/support/resting_cases.py", "src", "packages/contact", "packages/rigid", "packages/faces"]),
+    "defaults": Tool(["tools/measure-defaults"], [f"{STUDIES}/soft-boat-scene.xml", f"{STUDIES}/beam-in-channel-scene.xml"]),
     "discretizations": Tool(["tools/compare-discretizations"], [], ["docs/results/heave-decay.csv", "tools/compare-discretizations"]),
     "histories": Tool(["tools/compare-histories --against OTHER/simulate"], ["xml-params/scenes/*.xml"], by_hand=OTHER_PROGRAM),
     "histories-ranks": Tool(["tools/compare-histories --ranks 2"], ["xml-params/scenes/*.xml"]),
@@ -59,7 +60,9 @@ TOOL_PAGES = {
         f"{STUDIES}/plume-tiles-scene.xml", f"{STUDIES}/pool-tiles-scene.xml", "xml-params/scenes/plume-in-tall-room.xml"]),
     "presets": Tool(["tools/compare-presets"], [], ["xml-params/presets", "xml-params/studies", "tools/compare-presets", "packages"]),
     "ranks": Tool(["tools/measure-ranks"], [f"{STUDIES}/step-cost-scene.xml"], ["tests/benchmarks/mpi_counter.cpp"]),
-    "robustness": Tool(["tests/robustness/random_scenes.py --seeds 0-999 --quick --report docs/results/robustness.md",
+    "robustness": Tool(["tests/robustness/random_scenes.py --seeds 0-199,1000-1099,2000-2099,3000-3099,4000-4099,5000-5099,8000-8099,9000-9099,10000-10099 "
+                        "--quick --report docs/results/robustness.md",
+                        "tests/robustness/random_scenes.py --seeds 7000-7299 --ranks 1 2 3 4 --report docs/results/robustness.md",
                         "tests/robustness/mutations.py --mutations 0-5399 --report docs/results/robustness.md"],
                        ["xml-params/scenes/*.xml"], ["tests/robustness", "drivers", "packages"]),
     "scenes": Tool(["tools/measure-scenes --against OTHER/simulate"], ["xml-params/scenes/*.xml", f"{STUDIES}/soft-cost-scene.xml"],
