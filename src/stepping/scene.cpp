@@ -124,9 +124,9 @@ void declare_coupling(ParameterList& scene, const Registries<dim>& registries) {
   auto couplings = registries.couplings.schemas();
   couplings.push_back(
       {automatic_coupling_type,
-       "'flux' if every closed solid is rigid, at least two cells thick and not far lighter than "
-       "the fluid, else 'mixed face'; "
-       "--explain says which and why.",
+       "'flux' if there are closed solids, rigid or soft, and each is at least two cells thick and "
+       "has 0.02 of the fluid's density or more (one with a given motion any density), else "
+       "'mixed face'; --explain says which and why.",
        list});
   declare_typed_sublist(scene, "Coupling",
                         "Coupling of fluid and solids: their exchange of momentum.", couplings,
