@@ -85,13 +85,19 @@ std::string unknown(const char* kind, const std::string& name,
                      names.empty() ? "none" : quoted_list(names));
 }
 
-Document read_scene(const OpenRequest& request, const Communicator& comm) {
+Document read_parameters_of(const OpenRequest& request, const Communicator& comm) {
   if (request.text.empty())
     return read_parameters(request.scene, comm, FormulaPolicy::kept);
   if (!request.from_dictionary)
     return read_xml_string(request.text, request.scene, FormulaPolicy::kept);
   Document document = read_yaml_string(request.text, request.scene);
   document.source.places.clear();  // a dictionary has no lines
+  return document;
+}
+
+Document read_scene(const OpenRequest& request, const Communicator& comm) {
+  Document document = read_parameters_of(request, comm);
+  document.source.setting = "the setting";
   return document;
 }
 

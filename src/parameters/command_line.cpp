@@ -28,9 +28,10 @@ class Setter {
  public:
   Setter(Document& document, const std::string& assignment, const ParameterList* valid)
       : document_(document),
-        place_(fmt::format("--set \"{}\"", shortened(assignment, 100))),
+        place_(fmt::format("{} \"{}\"", document.source.setting, shortened(assignment, 100))),
         list_(&document.list),
-        valid_(valid) {
+        valid_(valid),
+        formulas_(valid ? FormulaPolicy::refused : FormulaPolicy::kept) {
     const std::size_t equals = assignment.find('=');
     check_input(equals != std::string::npos && equals > 0,
                 "{}: write a path and a value, as in --set \"List/Sub list/Name=value\".", place_);
@@ -126,25 +127,50 @@ class Setter {
     check_input(!elements_ && !(declared && declared->isList()),
                 "{}: {}, \"{}\" is a list; name one of its parameters, \"{}/...\".", place_,
                 in_list(path_), name, join_path(path_, name));
+    const std::string where = fmt::format("{}: {}, \"{}\"", place_, in_list(path_), name);
     try {
-      list_->setEntry(name, declared ? parse_like(*declared) : infer_value(value_));
+      list_->setEntry(name, declared ? parse_like(*declared) : inferred());
     } catch (const InputError& error) {
-      throw InputError(
-          fmt::format("{}: {}, \"{}\" {}.", place_, in_list(path_), name, error.what()));
+      throw InputError(fmt::format("{} {}.", where, error.what()));
     }
+    if (const ParameterEntry& entry = list_->getEntry(name);
+        entry.isType<Formula>() && formulas_ == FormulaPolicy::refused)
+      list_->setEntry(name,
+                      evaluated(Teuchos::getValue<Formula>(entry), document_.constants, where));
     document_.source.places[join_path(path_, name)] = place_;
   }
 
-  /// Reads numbers, or else formulas, in brackets or not.
+  /// Reads numbers, or else formulas: of place and time in brackets or not, others in brackets.
   ParameterEntry parse_like(const ParameterEntry& declared) const {
     const ValueType type = final_type(declared);
+    if (is_formula(type, value_))
+      return ParameterEntry(Formula{type, in_braces(type)});
     try {
       return parse_value(type, in_braces(type));
     } catch (const InputError&) {
       if (!valid_ || value_rule(declared).variables.empty())
         throw;
     }
-    return as_strings({type, in_braces(type)});
+    return ParameterEntry(Formula{type, in_brackets(type)});
+  }
+
+  /// Reads a parameter whose type nobody declares.
+  ParameterEntry inferred() const {
+    if (formulas_ == FormulaPolicy::refused || !is_formula(ValueType::real, value_))
+      return infer_value(value_);
+    const bool is_array = trimmed(value_).substr(0, 1) == "{";
+    return ParameterEntry(Formula{is_array ? ValueType::reals : ValueType::real, value_});
+  }
+
+  /// Puts each number in brackets: "y, 0" as "{[y], [0]}".
+  std::string in_brackets(ValueType type) const {
+    if (type != ValueType::reals && type != ValueType::integers)
+      return "[" + value_ + "]";
+    const ParameterEntry entry = parse_value(ValueType::texts, in_braces(type));
+    std::vector<std::string> formulas;
+    for (const std::string& formula : Teuchos::getValue<ParameterArray<std::string>>(entry))
+      formulas.push_back("[" + formula + "]");
+    return fmt::format("{{{}}}", fmt::join(formulas, ", "));
   }
 
   /// A shell makes several words of {1,2}, so the braces of an array may be left out.
@@ -160,6 +186,7 @@ class Setter {
   std::vector<std::string> names_;
   ParameterList* list_;
   const ParameterList* valid_;
+  FormulaPolicy formulas_;  ///< kept where the constants are not known yet
   const ListRule* elements_ = nullptr;
   ParameterList type_only_;
 };

@@ -29,7 +29,8 @@ std::string help_with(const std::string& unknown, const Variables& variables) {
     names.push_back(name);
   const std::string nearest = nearest_name(unknown, names);
   return (nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest)) +
-         fmt::format(" Known names: {}.", fmt::join(names, ", "));
+         (names.empty() ? " No names are known here: there are no constants."
+                        : fmt::format(" Known names: {}.", fmt::join(names, ", ")));
 }
 
 /// table(t, t1, f1, t2, f2, ...): the polygon through the points, constant before and after.

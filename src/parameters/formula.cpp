@@ -46,6 +46,22 @@ bool uses_mistake(const std::string& formula, const Variables& variables) {
   });
 }
 
+ParameterEntry evaluated(const Formula& formula, const Variables& constants,
+                         const std::string& where) {
+  if (formula.is_reduced || uses_mistake(formula.text, constants))
+    return ParameterEntry(formula);
+  try {
+    const std::string text = substitute(formula.text, constants, where, place_and_time(3));
+    return is_formula(formula.type, text) ? ParameterEntry(Formula{formula.type, text, true})
+                                          : parse_value(formula.type, text);
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    const bool is_whole = message.rfind(where, 0) == 0;
+    throw InputError(is_whole ? message
+                              : fmt::format("{} = \"{}\" {}.", where, formula.text, message));
+  }
+}
+
 void evaluate_formulas(ParameterList& list, const Variables& variables, const Source& source,
                        const std::string& path) {
   for (const auto& [name, entry] : entries(list)) {
@@ -53,22 +69,12 @@ void evaluate_formulas(ParameterList& list, const Variables& variables, const So
       evaluate_formulas(list.sublist(name), variables, source, join_path(path, name));
     } else if (entry.isType<Formula>()) {
       const Formula formula = Teuchos::getValue<Formula>(entry);
-      if (formula.is_reduced || uses_mistake(formula.text, variables))
-        continue;
       const std::string where =
           fmt::format("{}: {}, \"{}\"", source.place(join_path(path, name)), in_list(path), name);
       try {
-        const std::string text = substitute(formula.text, variables, where, place_and_time(3));
-        list.setEntry(name, is_formula(formula.type, text)
-                                ? ParameterEntry(Formula{formula.type, text, true})
-                                : parse_value(formula.type, text));
+        list.setEntry(name, evaluated(formula, variables, where));
       } catch (const InputError& error) {
-        const std::string message = error.what();
-        const bool is_whole = message.rfind(where, 0) == 0;
-        list.setEntry(
-            name, ParameterEntry(Mistake{
-                      {is_whole ? message
-                                : fmt::format("{} = \"{}\" {}.", where, formula.text, message)}}));
+        list.setEntry(name, ParameterEntry(Mistake{{error.what()}}));
       }
     }
   }

@@ -41,6 +41,12 @@ std::vector<std::string> place_and_time(int dimension);
 /// InputError whose message is the predicate of a sentence.
 ParameterEntry as_strings(const Formula& formula);
 
+/// The value of a formula, or, where it is one of place and time or uses a mistake, the formula
+/// with numbers in place of its constants. `where` begins the message. Throws InputError for bad
+/// syntax, unknown names, and a result that is not finite or, where an int is asked for, not whole.
+ParameterEntry evaluated(const Formula& formula, const Variables& constants,
+                         const std::string& where);
+
 /// Puts values in the place of all formulas in `list`, which stands at `path`, and in its sublists.
 /// One with bad syntax, unknown names, or a result that is not finite or, where an int is asked
 /// for, not whole becomes a `Mistake` with its place, which `validate` tells of. Formulas

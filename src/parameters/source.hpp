@@ -2,6 +2,7 @@
 #include <map>
 #include <string>
 
+#include "parameters/expression.hpp"
 #include "parameters/parameter_list.hpp"
 
 namespace lockstep {
@@ -11,6 +12,7 @@ namespace lockstep {
 struct Source {
   std::string file;
   std::map<std::string, std::string> places;  // path -> "case.xml, line 14"
+  std::string setting = "--set";              ///< before a setting in messages: --set "Time/End=1"
 
   /// The place of `path`, or of the nearest list around it that has one, or the file.
   std::string place(const std::string& path) const;
@@ -20,6 +22,7 @@ struct Source {
 struct Document {
   ParameterList list;
   Source source;
+  Variables constants = {};  ///< named numbers of a scene, for settings; nan where one is a mistake
 };
 
 std::string join_path(const std::string& list_path, const std::string& name);

@@ -32,7 +32,8 @@ std::string description(const ParameterEntry& valid) {
 /// Lists are validated in place, so that references into the given list stay alive.
 class Validator {
  public:
-  explicit Validator(const Source& source) : source_(source) {}
+  Validator(const Source& source, const Variables& constants)
+      : source_(source), constants_(constants) {}
 
   void check_list(ParameterList& given, const ParameterList& valid, const std::string& path) {
     for (const auto& [name, entry] : entries(given)) {
@@ -91,7 +92,28 @@ class Validator {
     check_input(!value_rule(valid).variables.empty(),
                 "{} is \"{}\", a formula of place or time, but takes constants only.",
                 subject(path, name), formula.text);
-    given.setEntry(name, as_strings(formula));
+    const ParameterEntry strings = as_strings(formula);
+    check_names(formulas_in(strings), constants_, valid, subject(path, name));
+    given.setEntry(name, strings);
+  }
+
+  /// The formulas of an entry that holds strings, one or an array; empty if it holds none.
+  static std::vector<std::string> formulas_in(const ParameterEntry& entry) {
+    if (entry.isType<std::string>())
+      return {Teuchos::getValue<std::string>(entry)};
+    if (entry.isType<ParameterArray<std::string>>())
+      return Teuchos::getValue<ParameterArray<std::string>>(entry).toVector();
+    return {};
+  }
+
+  /// Throws InputError for a formula that cannot be read, or names more than `known` and what the
+  /// parameter may be a formula of.
+  static void check_names(const std::vector<std::string>& formulas, Variables known,
+                          const ParameterEntry& valid, const std::string& subject) {
+    for (const std::string& variable : value_rule(valid).variables)
+      known[variable] = 0;
+    for (const std::string& formula : formulas)
+      const Expression readable(formula, known, subject);
   }
 
   /// True if formulas stand in place of numbers. Throws InputError for one that cannot be read.
@@ -99,21 +121,30 @@ class Validator {
                     const std::string& name, const std::string& path) const {
     if (valid.isList() || value_rule(valid).variables.empty())
       return false;
-    std::vector<std::string> formulas;
-    if (entry.isType<std::string>() && value_type(valid) == ValueType::real)
-      formulas = {Teuchos::getValue<std::string>(entry)};
-    else if (entry.isType<ParameterArray<std::string>>() && value_type(valid) == ValueType::reals)
-      formulas = Teuchos::getValue<ParameterArray<std::string>>(entry).toVector();
-    Variables variables;
-    for (const std::string& variable : value_rule(valid).variables)
-      variables[variable] = 0;
+    const ValueType wanted = value_type(valid);
+    const bool is_array = entry.isType<ParameterArray<std::string>>();
+    if (wanted != (is_array ? ValueType::reals : ValueType::real))
+      return false;
+    const std::vector<std::string> formulas = formulas_in(entry);
     for (const std::string& formula : formulas)
-      const Expression readable(formula, variables, subject(path, name));
+      check_brackets(formula, valid, subject(path, name));
+    check_names(formulas, {}, valid, subject(path, name));
     return !formulas.empty();
   }
 
   void check_entry(const ParameterEntry& entry, const ParameterEntry& valid,
                    const std::string& name, const std::string& path) const {
+  /// Refuses a constant in a formula without brackets, which knows none.
+  void check_brackets(const std::string& formula, const ParameterEntry& valid,
+                      const std::string& subject) const {
+    for (const std::string& name : names_in(formula)) {
+      check_input(constants_.count(name) == 0 || contains(value_rule(valid).variables, name),
+                  "{}: \"{}\" names the constant \"{}\", which formulas in brackets know: write "
+                  "\"[{}]\" (in XML with type=\"{}\").",
+                  subject, formula, name, formula, type_name(value_type(valid)));
+    }
+  }
+
     const ValueType type = final_type(entry), wanted = value_type(valid);
     check_input(entry.isList() || !valid.isList(),
                 "{} must be a list, <ParameterList name=\"{}\">, not a parameter.",
@@ -191,6 +222,7 @@ class Validator {
   const Source& source_;
   Mistakes mistakes_;
 };
+  const Variables& constants_;
 
 }  // namespace
 
@@ -224,15 +256,15 @@ const ParameterList& chosen_schema(const ListRule& rule, const ParameterList& gi
 }
 
 void validate(ParameterList& given, const ParameterList& valid, const Source& source,
-              const std::string& path) {
+              const std::string& path, const Variables& constants) {
   assign_types(given, valid, source, FormulaPolicy::refused, path);
-  Validator validator(source);
+  Validator validator(source, constants);
   validator.check_list(given, valid, path);
   validator.mistakes().throw_all();
 }
 
 void validate(Document& document, const ParameterList& valid) {
-  validate(document.list, valid, document.source);
+  validate(document.list, valid, document.source, "", document.constants);
 }
 
 }  // namespace lockstep

@@ -96,7 +96,8 @@ void expand_scene(Document& document, std::vector<std::string>& settings,
   for (auto setting = settings.begin(); setting != others; ++setting)
     set_unchecked(document, *setting);
   settings.erase(settings.begin(), others);
-  const Variables constants = take_constants(document);
+  document.constants = take_constants(document);
+  const Variables& constants = document.constants;
   keep_mistakes(document.list, "Defaults", [&] { apply_defaults(document, solid_types); });
   make_copies(document, scene_dimension(document), constants);
   evaluate_formulas(document.list, constants, document.source);
@@ -118,7 +119,8 @@ void declare_include_and_constants(ParameterList& scene) {
       "Named numbers (double or int). Any number of the scene may be a formula of them in "
       "brackets, "
       "value=\"[2*R]\" or \"{[R], 0}\", in the syntax of muParser; a constant of those before it. "
-      "Some may also be formulas of the place x, y, z and the time t, whose names constants hide.");
+      "Some may also be formulas of the place x, y, z and the time t, whose names constants hide. "
+      "So may numbers of settings (--set).");
 }
 
 /// Solids with what `add` puts beside the parameters of each type.

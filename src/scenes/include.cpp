@@ -111,7 +111,8 @@ std::vector<std::string> take_settings(const std::string& name,
 
 /// A document without parameters, for those that `--set` gives; one path is an array, too.
 Document blank(const Document& document, const std::string& name) {
-  Document result{ParameterList(document.list.name()), {document.source.file, {}}};
+  Document result{ParameterList(document.list.name()),
+                  {document.source.file, {}, document.source.setting}};
   result.list.set(name, ParameterArray<std::string>());
   return result;
 }

@@ -111,6 +111,15 @@ class Scenes(Folder):
             self.open(tank(), settings={"Time": {"Stepps": 2}})
         with self.assertRaisesRegex(lockstep.InputError, 'the setting "Time/Steps" is None'):
             self.open(tank(), settings={"Time": {"Steps": None}})
+        with self.assertRaisesRegex(lockstep.InputError, '^the setting "Time/End=long": in "Time", "End" is "long", which is not a number'):
+            self.open(tank(), settings={"Time/End": "long"})
+
+    def test_settings_know_the_constants(self):
+        settings = {"Domain/Cells": ("[2*N]", "[N]"), "Fluid/Density": "[100*N]"}
+        with self.open(tank(Constants={"N": 8}), settings=settings) as run:
+            self.assertEqual(run.grid.cells, (16, 8))
+        with self.assertRaisesRegex(lockstep.InputError, 'Did you mean "N"'):
+            self.open(tank(Constants={"N": 8}), settings={"Fluid/Density": "[100*NN]"})
 
 
 class Views(Folder):

@@ -246,6 +246,13 @@ class Mistakes(unittest.TestCase):
         self.assertIn('in "Fluid/Free Surface/Liquid/Pool", "Height": cannot evaluate "1 + "', said)
         self.assertRegex(said, r"scene.xml, line \d+")
 
+    def test_misspelt_constants_get_their_names(self):
+        text = scene(2, {"Velocity": ("[UU*y]", "0")}, constants={"U": 2.})
+        said = self.message(text.replace('"Velocity" type="Array(string)"', '"Velocity" type="Array(double)"'))
+        self.assertIn('Did you mean "U"? Known names: U, x, y.', said)
+        said = self.message(scene(2, {"Velocity": ("U*y", "0")}, constants={"U": 2.}))
+        self.assertIn('"U*y" names the constant "U", which formulas in brackets know: write "[U*y]" (in XML with type="Array(double)").', said)
+
     def test_only_what_takes_formulas_of_place_and_time_takes_them(self):
         said = self.message(scene(2, {"Viscosity": "[0.1*x]"}).replace('"Viscosity" type="string"', '"Viscosity" type="double"'))
         self.assertIn('"Viscosity" is "[0.1*x]", a formula of place or time, but takes constants only', said)

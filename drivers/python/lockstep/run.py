@@ -78,9 +78,9 @@ class Run:
         scene: the path of a file; or its text, which begins with "<"; or a dictionary, {"Dimension": 2, "Fluid": {"Density": 1000}},
         in which dictionaries are lists, tuples arrays, and a text in brackets is a formula. Files that a text or a dictionary name
         are relative to the folder that the script runs in. output: the folder for frames, tables and checkpoints. settings: what
-        `simulate --set` takes, {"Time/End": 2.0, "Domain/Cells": (64, 64)} or nested. restart: a checkpoint to go on from; forces
-        and targets set from here are not in it. quiet: no line a step. plug_ins: libraries of plug-ins to load, beside those that
-        the scene names.
+        `simulate --set` takes, {"Time/End": 2.0, "Domain/Cells": (64, 64)} or nested; "[2*R]" is a formula of the scene's constants.
+        restart: a checkpoint to go on from; forces and targets set from here are not in it. quiet: no line a step. plug_ins:
+        libraries of plug-ins to load, beside those that the scene names.
         """
         request = request_of(scene)
         request.output, request.restart, request.quiet = os.fsdecode(output), os.fsdecode(restart), bool(quiet)

@@ -109,6 +109,41 @@ TEST(CommandLine, MistakesNameTheSetting) {
             "list/Name=value\".");
 }
 
+TEST(CommandLine, NumbersMayBeFormulasOfConstants) {
+  Document document = scene();
+  document.constants = {{"R", 2}, {"n", 3}};
+  ParameterList valid = scene_schema();
+  declare(valid, "Title", "", "A text, in which brackets are brackets.");
+  for (const char* assignment :
+       {"Fluid/Density=[500*R]", "Fluid/Steps=[n]", "Fluid/Gravity={0, [-R]}", "Title=[R]"})
+    set_from_command_line(document, assignment, valid);
+
+  validate(document, valid);
+
+  EXPECT_EQ(document.list.get<std::string>("Title"), "[R]");
+  const ParameterList& fluid = document.list.sublist("Fluid");
+  EXPECT_EQ(fluid.get<double>("Density"), 1000);
+  EXPECT_EQ(fluid.get<int>("Steps"), 3);
+  EXPECT_EQ(fluid.get<ParameterArray<double>>("Gravity"), (make_array<double>({0, -2})));
+}
+
+TEST(CommandLine, WrongFormulasNameTheSettingAndTheConstants) {
+  const auto refusal = [](const std::string& assignment, const Variables& constants) {
+    Document document = scene();
+    document.constants = constants;
+    return input_error([&] { set_from_command_line(document, assignment, scene_schema()); });
+  };
+  const std::string where = ": in \"Fluid\", ";
+  EXPECT_EQ(refusal("Fluid/Density=[Radus]", {{"Radius", 2}, {"U", 1}}),
+            "--set \"Fluid/Density=[Radus]\"" + where +
+                "\"Density\": cannot evaluate \"Radus\": Unexpected token \"Radus\" found at "
+                "position 0. Did you mean \"Radius\"? Known names: Radius, U.");
+  EXPECT_THAT(refusal("Fluid/Density=[R]", {}), ::testing::HasSubstr("there are no constants."));
+  EXPECT_EQ(refusal("Fluid/Steps=[R]", {{"R", 2.5}}),
+            "--set \"Fluid/Steps=[R]\"" + where +
+                "\"Steps\" = \"[R]\" is \"2.5\", which is not an integer.");
+}
+
 TEST(CommandLine, ValidationNamesTheSettingAsThePlace) {
   Document document = scene();
 

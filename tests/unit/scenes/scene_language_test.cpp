@@ -71,6 +71,17 @@ int n_solids(const Document& document) {
   return document.list.sublist("Solids").numParams();
 }
 
+TEST(SceneLanguage, SettingsOfConstantsMayBeFormulas) {
+  const std::string body =
+      list("Constants", parameter("Q", "double", "3") + parameter("R", "double", "1")) +
+      list("Solids", list("Ball", ball(parameter("Position", "Array(double)", "{[R], [S]}"))));
+
+  const Document document = expanded(body, {"Constants/R=[2*Q]", "Constants/S=[R+1]"});
+
+  EXPECT_THAT(position(document, "Ball"), ElementsAre(6, 7));
+  EXPECT_EQ(document.constants.at("S"), 7);
+}
+
 TEST(SceneLanguage, FormulasKnowConstantsAndConstantsThoseBeforeThem) {
   const std::string body =
       list("Constants", parameter("R", "double", "0.25") + parameter("n", "int", "8") +
