@@ -234,8 +234,10 @@ class SteppedRun : public AnyRun {
     const auto* output = simulation_->components().fluid->output();
     check_input(output != nullptr, "This fluid cannot be asked at points.");
     std::vector<Point<dim>> places(points.rows());
-    for (Eigen::Index i = 0; i < points.rows(); ++i)
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
       places[i] = points.row(i);
+      check_in_domain(places[i]);
+    }
     const std::vector<FluidSample<dim>> found = output->sample(places);
     Samples samples;
     samples.in_fluid.resize(points.rows());
@@ -259,6 +261,22 @@ class SteppedRun : public AnyRun {
   std::vector<SurfaceFrame> surfaces() const override { return simulation_->frame().meshes; }
 
  private:
+  /// Points beyond periodic sides are those that they repeat.
+  void check_in_domain(const Point<dim>& x) const {
+    constexpr double round_off = 1e-9;  // part of the domain
+    const FluidDiscretization<dim>& fluid = *simulation_->components().fluid;
+    const Box<dim> domain = fluid.bounds();
+    const std::array<bool, dim> periodic = fluid.periodic_axes();
+    for (int a = 0; a < dim; ++a) {
+      const double beyond = std::max(x[a] - domain.max()[a], domain.min()[a] - x[a]);
+      check_input(periodic[a] || beyond <= round_off * domain.sizes()[a],
+                  "The point ({}) is outside of the domain, which goes from ({}) to ({}) m.",
+                  fmt::join(x.begin(), x.end(), ", "),
+                  fmt::join(domain.min().begin(), domain.min().end(), ", "),
+                  fmt::join(domain.max().begin(), domain.max().end(), ", "));
+    }
+  }
+
   SolidSystem<dim>& solids() const { return *simulation_->components().solids; }
 
   /// Zero before the first step. `number`: in the order of the states.

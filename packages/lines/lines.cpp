@@ -150,6 +150,7 @@ std::vector<NodeAttachment<dim>> Lines<dim>::attachments() const {
         node.dofs[a] = row_of_end(line, end, dim) + a;
       node.position = lines_[line].ends[end];
       node.solid = lines_[line].solids[end];
+      node.line = lines_[line].name;
       nodes.push_back(node);
     }
   }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "interfaces/solid_sides.hpp"
+#include "parameters/suggestion.hpp"
 
 namespace lockstep {
 
@@ -37,6 +38,22 @@ void unseen_row(const JointableSolids<dim>& model, int solid, const Point<dim>& 
 
 }  // namespace
 
+std::string no_carrier(const std::string& solid, const std::string& line,
+                       const std::vector<std::string>& carriers) {
+  const std::string nearest = nearest_name(solid, carriers);
+  const std::string meant = nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest);
+  if (line.empty())
+    return fmt::format(
+        "Nodes are attached to \"{}\", which is no solid that is rigid and dynamic.{} Name one, or "
+        "pin the nodes and give them a motion.",
+        solid, meant);
+  return fmt::format(
+      "The line \"{}\" is attached to \"{}\", which is no solid that is rigid and dynamic.{} Name "
+      "one, or \"space\" for an end that is held in place. To hold cloth or a soft body by a line, "
+      "attach its nodes (\"Attachments\") to a rigid body and the line to that.",
+      line, solid, meant);
+}
+
 template <int dim>
 std::vector<AttachedNode<dim>> find_attached_nodes(
     const std::vector<std::unique_ptr<SolidModel<dim>>>& models,
@@ -51,10 +68,10 @@ std::vector<AttachedNode<dim>> find_attached_nodes(
     for (const NodeAttachment<dim>& attachment : attachments) {
       const auto carrier = carriers.find(attachment.solid);
       if (carrier == carriers.end()) {
-        failure = fmt::format(
-            "Nodes are attached to \"{}\", which is no solid that is rigid and dynamic; name one, "
-            "or pin the nodes and give them a motion.",
-            attachment.solid);
+        std::vector<std::string> names;
+        for (const auto& [name, solid] : carriers)
+          names.push_back(name);
+        failure = no_carrier(attachment.solid, attachment.line, names);
         return {};
       }
       AttachedNode<dim> node{attachment.dofs, static_cast<int>(m), carrier->second,

@@ -25,6 +25,11 @@ struct AttachedNode {
   Point<dim> position;  ///< present [m]
 };
 
+/// Sentence about an end of `line`, or about nodes if that is empty, that is attached to a `solid`
+/// which cannot carry it. `carriers`: names of those that can.
+std::string no_carrier(const std::string& solid, const std::string& line,
+                       const std::vector<std::string>& carriers);
+
 /// Returns the attached nodes of this rank at their present positions; `failure` gets a sentence if
 /// one names a solid that is not rigid and dynamic. Local.
 template <int dim>

@@ -39,6 +39,7 @@ struct NodeAttachment {
   std::array<GlobalIndex, dim> dofs{};       ///< its velocity along each axis, ids in `dof_map`
   Point<dim> position = Point<dim>::Zero();  ///< present [m]
   std::string solid;                         ///< name of the rigid solid
+  std::string line;  ///< name of the line whose end it is; empty: it is a soft solid's
 };
 
 template <int dim>

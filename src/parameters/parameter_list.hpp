@@ -25,6 +25,7 @@ struct TypedSchema {
   std::string type;
   std::string documentation;
   ParameterList parameters;  // without "Type", which is added
+  bool is_plug_in = false;   ///< libraries may bring more of its kind
 };
 
 /// A parameter with a default.

@@ -11,6 +11,12 @@
 
 namespace lockstep {
 
+/// Sentence about a plug-in that is none of those that there are, nor misspelt, with a blank before
+/// it.
+inline const std::string hint_at_libraries =
+    " If a library of plug-ins has it, name that by --plug-in FILE (in Python plug_ins), or in a "
+    "scene's \"Plug-ins\".";
+
 /// A registry of any kind, for lists of what there is.
 class NamedPlugIns {
  public:
@@ -66,7 +72,7 @@ class Registry : public NamedPlugIns {
   std::vector<TypedSchema> schemas() const {
     std::vector<TypedSchema> result;
     for (const Plugin& plugin : plugins_) {
-      result.push_back({plugin.name, plugin.documentation, plugin.valid_parameters()});
+      result.push_back({plugin.name, plugin.documentation, plugin.valid_parameters(), true});
     }
     return result;
   }
@@ -106,9 +112,10 @@ class Registry : public NamedPlugIns {
       table += fmt::format("\n  {}: {}", plugin.name, plugin.documentation);
     }
     const std::string nearest = nearest_name(name, names);
-    return fmt::format("There is no {} \"{}\".{}\nRegistered:{}", kind_, name,
-                       nearest.empty() ? "" : fmt::format(" Did you mean \"{}\"?", nearest),
-                       plugins_.empty() ? " none" : table);
+    return fmt::format(
+        "There is no {} \"{}\".{}\nRegistered:{}", kind_, name,
+        nearest.empty() ? hint_at_libraries : fmt::format(" Did you mean \"{}\"?", nearest),
+        plugins_.empty() ? " none" : table);
   }
 
   std::string kind_;

@@ -1,5 +1,6 @@
 #include "parameters/validate.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "base/errors.hpp"
@@ -7,6 +8,7 @@
 #include "parameters/former_names.hpp"
 #include "parameters/formula.hpp"
 #include "parameters/mistakes.hpp"
+#include "parameters/registry.hpp"
 #include "parameters/strict_values.hpp"
 #include "parameters/suggestion.hpp"
 #include "parameters/untyped.hpp"
@@ -132,8 +134,6 @@ class Validator {
     return !formulas.empty();
   }
 
-  void check_entry(const ParameterEntry& entry, const ParameterEntry& valid,
-                   const std::string& name, const std::string& path) const {
   /// Refuses a constant in a formula without brackets, which knows none.
   void check_brackets(const std::string& formula, const ParameterEntry& valid,
                       const std::string& subject) const {
@@ -145,6 +145,8 @@ class Validator {
     }
   }
 
+  void check_entry(const ParameterEntry& entry, const ParameterEntry& valid,
+                   const std::string& name, const std::string& path) const {
     const ValueType type = final_type(entry), wanted = value_type(valid);
     check_input(entry.isList() || !valid.isList(),
                 "{} must be a list, <ParameterList name=\"{}\">, not a parameter.",
@@ -220,9 +222,9 @@ class Validator {
   }
 
   const Source& source_;
+  const Variables& constants_;
   Mistakes mistakes_;
 };
-  const Variables& constants_;
 
 }  // namespace
 
@@ -250,7 +252,15 @@ const ParameterList& chosen_schema(const ListRule& rule, const ParameterList& gi
   ParameterList type;
   if (given.isParameter("Type"))
     type.setEntry("Type", given.getEntry("Type"));
-  validate(type, rule.type_declaration(), source, path);
+  const bool is_extensible = std::any_of(rule.schemas.begin(), rule.schemas.end(),
+                                         [](const TypedSchema& one) { return one.is_plug_in; });
+  try {
+    validate(type, rule.type_declaration(), source, path);
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    const bool is_unknown = is_extensible && given.isType<std::string>("Type");
+    throw InputError(message + (is_unknown && message.back() != '?' ? hint_at_libraries : ""));
+  }
   throw InputError(
       fmt::format("{}: {}, no \"Type\" is available.", source.place(path), in_list(path)));
 }

@@ -10,6 +10,7 @@
 #include "base/errors.hpp"
 #include "base/wait_for_all.hpp"
 #include "base/xml_text.hpp"
+#include "coupling/attached_nodes.hpp"
 #include "coupling/automatic_coupling.hpp"
 #include "output/xdmf.hpp"
 #include "parameters/shape_sizes.hpp"
@@ -229,17 +230,16 @@ class SceneBuilder {
 
   /// Notes the names of solids that nodes are attached to and the scene has not.
   void check_carriers(const std::vector<std::unique_ptr<SolidModel<dim>>>& models) {
+    std::vector<std::string> carriers;
+    for (const auto& model : models)
+      for (const SolidDescription& solid : model->solids())
+        if (solid.rigid && !solid.prescribed)
+          carriers.push_back(solid.name);
     for (const auto& model : models) {
-      std::set<std::string> unknown;
+      std::set<std::string> sentences;
       for (const NodeAttachment<dim>& node : model->attachments())
         if (!scene_.sublist("Solids").isSublist(node.solid))
-          unknown.insert(node.solid);
-      std::vector<std::string> sentences;
-      for (const std::string& solid : unknown)
-        sentences.push_back(fmt::format(
-            "Nodes are attached to \"{}\", which is no solid that is rigid and dynamic; name one, "
-            "or pin the nodes and give them a motion.",
-            solid));
+          sentences.insert(no_carrier(node.solid, node.line, carriers));
       try {
         throw_on_all(comm_, fmt::format("{}", fmt::join(sentences, "\n")),
                      static_cast<int>(ExitCode::bad_input));

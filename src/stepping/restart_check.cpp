@@ -16,7 +16,8 @@ namespace lockstep {
 namespace {
 
 const char* const help =
-    "Restart with the scene and the --set of the run that wrote it; only \"Title\", \"Time\" (but "
+    "Restart with the scene and the settings (--set) of the run that wrote it; only \"Title\", "
+    "\"Time\" (but "
     "for its \"Start\"), \"Solver\", \"Output\", \"Observers\" and \"View\" may differ.";
 
 /// A run may go on to another end, with other steps, solvers and outputs. But bodies stand, joints

@@ -209,6 +209,8 @@ CASES = [
          change=(DENSITY, value("Density", "double", "[1000*0,5]"))),
     Case("a number that no double can hold in a formula", ["cannot evaluate \"500*1e999\"", "1e999"],
          change=(DENSITY, value("Density", "double", "[500*1e999]"))),
+    Case("a plug-in of a library that is not loaded", ["\"Type\" is \"my-body\"", "--plug-in FILE"],
+         change=(BODY_TYPE, BODY_TYPE.replace("rigid body", "my-body"))),
     Case("no plug-in", "\"Type\"", change=(BODY_TYPE, "")),
     Case("no dimension", ["\"Dimension\"", "required"], change=(DIMENSION, "")),
     Case("one dimension", ["\"Dimension\" is 1", "2 or 3"], change=(DIMENSION, value("Dimension", "int", "1"))),

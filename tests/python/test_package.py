@@ -135,6 +135,17 @@ class Views(Folder):
             self.assertTrue(there[0])
             np.testing.assert_allclose((x[0], y[-1], z[3]), (.0625, 1.9375, 2.4375))
 
+    def test_points_outside_of_the_domain_are_refused(self):
+        with self.open(tank()) as run:
+            low, high = run.grid.origin, run.grid.origin + run.grid.spacing * run.grid.cells
+            self.assertTrue(run.sample([low, high])[0].all())
+            for point in (high + (0, 1e-3), low - (1e-3, 0)):
+                with self.assertRaisesRegex(lockstep.InputError, "is outside of the domain, which goes from"):
+                    run.sample([(low + high) / 2, point])
+        sides = {f"x {end}": {"Type": "periodic"} for end in ("lower", "upper")}
+        with self.open(tank(Domain={"Cells": (16, 16), "Sides": sides})) as run:
+            self.assertTrue(run.sample([high + (3, -.01)])[0].all())
+
     def test_time_step(self):
         with self.open(tank(solids={"Ball": ball()})) as run:
             self.assertEqual(run.time_step, 0)
@@ -320,7 +331,9 @@ class Names(Folder):
                     (lambda: run.fields()["presure"], KeyError, 'Did you mean "pressure"'),
                     (lambda: run.joints()["Kne"], KeyError, 'Did you mean "Knee"'),
                     (lambda: run.surface("Bell"), KeyError, 'Did you mean "Ball"'),
-                    (lambda: run.nodes("Bell"), KeyError, 'Did you mean "Ball"'),
+                    (lambda: run.nodes("Bell"), KeyError, 'no solid "Bell". Did you mean "Ball"\\? There are: "Ball"'),
+                    (lambda: run.steps, AttributeError, 'A Run has no attribute "steps". Did you mean "step"'),
+                    (lambda: run.grid.spaceing, AttributeError, 'A Grid has no attribute "spaceing". Did you mean "spacing"'),
                     (lambda: run.set_force("Bell", (0, 0)), lockstep.InputError, 'no solid "Bell". Did you mean "Ball"'),
                     (lambda: run.set_target("Kne", 0), lockstep.InputError, 'no joint "Kne". Did you mean "Knee"')):
                 with self.assertRaisesRegex(error, sentence):

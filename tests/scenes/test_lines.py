@@ -113,6 +113,8 @@ class Lines(unittest.TestCase):
         cases = (({"A": body, "S": spring(("A", "A"), (0., 0., 1., 1.), 1.)}, 1., "connects \"A\" with itself"),
                  ({"A": body, "S": spring(("A", "B"), (0., 0., 1., 1.), 1.)}, 1., "attached to \"B\""),
                  ({"A": fixed, "S": spring(("space", "A"), (0., 0., 1., 1.), 1.)}, 1., "no solid that is rigid and dynamic"),
+                 ({"A": fixed, "S": spring(("space", "A"), (0., 0., 1., 1.), 1.)}, 1., 'The line "S" is attached to "A"'),
+                 ({"Hull": body, "S": spring(("space", "Hul"), (0., 0., 1., 1.), 1.)}, 1., 'Did you mean "Hull"? Name one, or "space"'),
                  ({"A": body, "S": spring(("space", "A"), (0., 0., 1., 1.), 0.)}, 1., "neither \"Stiffness\" nor \"Damping\""),
                  ({"A": body, "L": line}, 0., "\"Fluid/Gravity\" is zero"),
                  ({"A": body, "L": {**line, "On Floor": True, "Points": (0., 1., .5, .5)}}, 1., "below its second"))

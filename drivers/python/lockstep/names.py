@@ -1,7 +1,17 @@
-"""Dictionaries that answer an unknown name with the near one."""
-from typing import Any, Dict
+"""Dictionaries and objects that answer an unknown name with the near one."""
+from typing import TYPE_CHECKING, Any, Dict
 
 from ._core import nearest_name
+
+
+class NearNames:
+    """An object whose AttributeError says which name was meant."""
+
+    if not TYPE_CHECKING:  # type checkers would take any name for one that there is
+        def __getattr__(self, name: str) -> Any:
+            nearest = "" if name.startswith("_") else nearest_name(name, [known for known in dir(self) if not known.startswith("_")])
+            meant = f' Did you mean "{nearest}"?' if nearest else ""
+            raise AttributeError(f'A {type(self).__name__} has no attribute "{name}".{meant}')
 
 
 class Named(Dict[str, Any]):

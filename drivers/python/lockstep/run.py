@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Type, U
 import numpy as np
 
 from . import _core
-from .names import Named
+from .names import Named, NearNames
 from .scene_text import json_of, settings_of
 
 Path = Union[str, bytes, "os.PathLike[str]"]
@@ -18,7 +18,7 @@ Numbers = Union[float, Sequence[float], np.ndarray]
 
 
 @dataclass(frozen=True)
-class Grid:
+class Grid(NearNames):
     """The box of cells of a fluid."""
 
     cells: Tuple[int, ...]
@@ -63,7 +63,7 @@ def request_of(scene: Scene) -> _core.OpenRequest:
     return request
 
 
-class Run:
+class Run(NearNames):
     """A run of a scene, to be stepped.
 
     All members are collective on several ranks: every rank calls them with the same arguments. What is wrong with a scene or an
@@ -218,7 +218,9 @@ class Run:
     def nodes(self, name: str) -> np.ndarray:
         """Positions of the nodes of a solid [m], (n, d): those inside too if it is soft, in the order of its mesh."""
         surfaces = self.surfaces()
-        return surfaces.get(f"{name} elements", surfaces[name])[0]
+        insides = [f"{solid} elements" for solid in surfaces]
+        solids = Named("solid", {solid: surfaces.get(f"{solid} elements", surface) for solid, surface in surfaces.items() if solid not in insides})
+        return solids[name][0]
 
     def fields(self) -> Dict[str, np.ndarray]:
         """All fields of a frame by name, on the cells of the whole box: velocity [m/s], pressure [Pa], ...
@@ -228,7 +230,10 @@ class Run:
         return Named("field", self._core.fields())
 
     def sample(self, points: "Union[np.ndarray, Sequence[Sequence[float]]]") -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The fluid at points, (n, d) [m]: whether it is there, (n,), its pressure [Pa], (n,), and its velocity [m/s], (n, d)."""
+        """The fluid at points, (n, d) [m]: whether it is there, (n,), its pressure [Pa], (n,), and its velocity [m/s], (n, d).
+
+        In solids it is not there, and numbers are 0. A point outside of the domain, but for periodic sides, raises InputError.
+        """
         return self._core.sample(points)
 
     def set_force(self, body: str, force: Numbers, torque: Numbers = 0.) -> None:
