@@ -20,6 +20,8 @@ CoupledSystem<dim>::CoupledSystem(FluidDiscretization<dim>& fluid, SolidSystem<d
   for (int m = 0; m < solids.n_models(); ++m) {
     solid_depends_on_dt_ = solid_depends_on_dt_ || !solids.model(m).implicit_force(1).is_null();
   }
+  for (const SolidDescription& solid : solids.solids())
+    has_soft_bodies_ = has_soft_bodies_ || solid.is_soft_body();
 }
 
 template <int dim>
@@ -167,6 +169,13 @@ void CoupledSystem<dim>::add_given_fluxes(const Reduction& constraints,
     fluxes.push_back(flux_of_given("what pins move of soft solids", transposed, rest));
 }
 
+namespace {
+template <int dim>
+constexpr GlobalIndex smallest_region = dim == 2 ? 9 : 27;  // three cells across
+template <int dim>
+constexpr const char* rate_unit = dim == 2 ? "m^2/s" : "m^3/s";
+}  // namespace
+
 template <int dim>
 std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& constraints,
                                                 double negligible) const {
@@ -180,9 +189,23 @@ std::string CoupledSystem<dim>::impossible_flow(double time, const Reduction& co
     fluxes.solids = pushed->solid_fluxes(solids_);
   if (with_solid && !constraints.offset().is_null())
     add_given_fluxes(constraints, fluxes.solids);
-  constexpr GlobalIndex smallest_region = dim == 2 ? 9 : 27;  // three cells across
-  return lockstep::impossible_flow(null_space, fluxes, smallest_region, negligible,
-                                   dim == 2 ? "m^2/s" : "m^3/s");
+  return lockstep::impossible_flow(null_space, fluxes, smallest_region<dim>, negligible,
+                                   rate_unit<dim>);
+}
+
+template <int dim>
+std::string CoupledSystem<dim>::squeezing_flow(double time, double negligible) const {
+  if (!solids_.has_unknowns() || !locks_solids() || !has_soft_bodies_)
+    return "";
+  const PrescribedFluxes fluxes{fluid_.side_fluxes(time), {}};
+  if (fluxes.sides.empty())
+    return "";
+  const NullSpace closed =
+      fluid_that_squeezes_solids(blocks_.pressure_null_space, *coupling_transposed_, solids_,
+                                 *surface_, fluid_.bounds(), fluid_.smallest_length());
+  const std::string sentence =
+      lockstep::impossible_flow(closed, fluxes, smallest_region<dim>, negligible, rate_unit<dim>);
+  return sentence.empty() ? "" : sentence + " Soft bodies in it could only be squeezed.";
 }
 
 template <int dim>

@@ -50,6 +50,10 @@ class CoupledSystem {
   /// that is closed in (`impossible_flow`) by more than `negligible` [m^dim/s]. Collective.
   std::string impossible_flow(double time, const Reduction& constraints,
                               double negligible = 0) const;
+  /// A sentence if sides change the volume of closed fluid by more than `negligible` [m^dim/s] and
+  /// soft bodies would have to make room for it by their own volume
+  /// (`fluid_that_squeezes_solids`). Collective.
+  std::string squeezing_flow(double time, double negligible = 0) const;
 
   /// Impulses of the constraints (`Reduction::keep_reactions`), of a solution with the velocities V
   /// of all dofs. Collective.
@@ -87,6 +91,7 @@ class CoupledSystem {
   double block_dt_ = 0;               ///< the dt of C in `blocks_`
   unsigned block_linearisation_ = 0;  ///< linearisation number of D in `blocks_`, see SolidSystem
   bool solid_depends_on_dt_ = false;
+  bool has_soft_bodies_ = false;
   RCP<const CrsMatrix> held_stiffness_;  ///< J^T K J in the C of `blocks_`; null: none
   bool is_held_anew_ = false;            ///< not yet in C
 };

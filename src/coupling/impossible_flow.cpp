@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Vector.hpp>
 #include <algorithm>
 #include <cmath>
 
 #include "base/communicator.hpp"
+#include "linear/matrix_rows.hpp"
 #include "linear/overlap.hpp"
 
 namespace lockstep {
@@ -154,5 +156,75 @@ std::string impossible_flow(const NullSpace& null_space, const PrescribedFluxes&
   }
   return "";
 }
+
+namespace {
+
+template <int dim>
+bool is_soft(const SolidModel<dim>& model) {
+  const std::vector<SolidDescription>& solids = model.solids();
+  return std::any_of(solids.begin(), solids.end(),
+                     [](const SolidDescription& solid) { return solid.is_soft_body(); });
+}
+
+/// True if a soft body could be pushed out through a side of the domain.
+template <int dim>
+bool reaches_out(const SurfaceSnapshot<dim>& surface, const Box<dim>& domain, double cell) {
+  const Point<dim> margin = Point<dim>::Constant(cell);
+  const Box<dim> around(domain.min() - margin, domain.max() + margin);
+  for (std::size_t s = 0; s < surface.solids().size(); ++s) {
+    if (surface.solids()[s].is_soft_body() &&
+        !around.contains(surface.own_bounds(static_cast<int>(s))))
+      return true;
+  }
+  return false;
+}
+
+/// B^T x, the push of pressures on the solids.
+RCP<Vector> push_of(const Vector& pressures, const CrsMatrix& coupling_transposed) {
+  const RCP<Vector> push = make_vector(coupling_transposed.getRowMap());
+  coupling_transposed.apply(pressures, *push);
+  return push;
+}
+
+}  // namespace
+
+template <int dim>
+NullSpace fluid_that_squeezes_solids(const NullSpace& pressure,
+                                     const CrsMatrix& coupling_transposed,
+                                     const SolidSystem<dim>& solids,
+                                     const SurfaceSnapshot<dim>& surface, const Box<dim>& domain,
+                                     double cell) {
+  const std::vector<double> n_rows = pressure.regions().n_rows();
+  double n = 0;
+  for (const double of_region : n_rows)
+    n += of_region;
+  std::vector<NullSpace::Part> all;
+  for (std::size_t region = 0; region < n_rows.size(); ++region)
+    all.push_back({static_cast<int>(region), 1 / std::sqrt(n)});
+  NullSpace closed = pressure.with({std::move(all)});
+
+  const RCP<Vector> pressures = closed.vector(0);
+  const RCP<Vector> of_closed = push_of(*pressures, coupling_transposed);
+  const RCP<Vector> open = make_vector(pressures->getMap());
+  open->putScalar(1 / std::sqrt(n));
+  open->update(-1, *pressures, 1);
+  const RCP<Vector> of_open = push_of(*open, coupling_transposed);
+  const double round_off = round_off_of_sums(coupling_transposed);
+  bool has_soft_body = false;
+  for (int m = 0; m < solids.n_models(); ++m) {
+    const bool soft = is_soft(solids.model(m));
+    has_soft_body = has_soft_body || soft;
+    if (solids.part(soft ? *of_open : *of_closed, m)->normInf() > round_off)
+      return pressure.with({});
+  }
+  return has_soft_body && !reaches_out(surface, domain, cell) ? closed : pressure.with({});
+}
+
+template NullSpace fluid_that_squeezes_solids(const NullSpace&, const CrsMatrix&,
+                                              const SolidSystem<2>&, const SurfaceSnapshot<2>&,
+                                              const Box<2>&, double);
+template NullSpace fluid_that_squeezes_solids(const NullSpace&, const CrsMatrix&,
+                                              const SolidSystem<3>&, const SurfaceSnapshot<3>&,
+                                              const Box<3>&, double);
 
 }  // namespace lockstep

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/solid_system.hpp"
 #include "interfaces/prescribed_flux.hpp"
 #include "linear/null_space.hpp"
 
@@ -27,5 +28,17 @@ struct PrescribedFluxes {
 std::string impossible_flow(const NullSpace& null_space, const PrescribedFluxes& fluxes,
                             GlobalIndex smallest_region, double negligible,
                             const std::string& unit);
+
+/// All closed fluid as one null vector, if nothing but a squeezed soft body could change its volume
+/// as a whole; else a space without vectors. A shell or a rigid solid that has open fluid or gas at
+/// its other side can change it, and so can a soft body that touches open fluid or reaches more
+/// than `cell` [m] out of the domain. `pressure`: the regions without an open side;
+/// `coupling_transposed`: the (solid dofs x pressures) matrix at the same geometry. Collective.
+template <int dim>
+NullSpace fluid_that_squeezes_solids(const NullSpace& pressure,
+                                     const CrsMatrix& coupling_transposed,
+                                     const SolidSystem<dim>& solids,
+                                     const SurfaceSnapshot<dim>& surface, const Box<dim>& domain,
+                                     double cell);
 
 }  // namespace lockstep

@@ -70,6 +70,26 @@ class HardScenes(unittest.TestCase):
             piston = moved(box(.25, 1.4), Amplitude=(.05, 0.), **start_at_rest)
             self.assert_refused(scene(solids={"Piston": piston}, coupling=coupling), 'solid "Piston"', code=3)
 
+    def test_soft_bodies_are_no_outlet(self):
+        """Nor a pinned one; but one that has open fluid behind it gives way, and so does cloth."""
+        def soft(width, height, x, y, **more):
+            return {"Type": "deformable body", "Geometry": {"Shape": "box", "Size": (width, height), "Mesh Spacing": .125}, "Density": 1.,
+                    "Material": {"Type": "linear", "Young's Modulus": 1e3, "Poisson's Ratio": .3}, "Position": (x, y), **more}
+        beam = soft(.25, .5, .5, .25, Pinned={"Foot": {"Lower": (0., -.1), "Upper": (1., .01)}})
+        sheet = {"Type": "cloth", "Geometry": {"Shape": "sheet", "Size": (0., 1.), "Normal": "x"}, "Young's Modulus": 1e3,
+                 "Thickness": .01, "Surface Density": 1., "Position": (.5, .5), "Time Integration": "semi-implicit"}
+        stream = {"x lower": inflow(1., 0.)}
+        for coupling in COUPLINGS:
+            for body in (beam, soft(.5, .25, .5, .5)):
+                self.assert_refused(scene(sides=stream, solids={"Beam": body, "Cloth": {**sheet, "Position": (.8, .5)}}, coupling=coupling),
+                                    "At the start", 'inflow "x lower" pushes in 1 m^2/s', "could only be squeezed")
+                self.run_scene(scene(sides={**stream, "x upper": {"Type": "open"}}, solids={"Beam": body}, coupling=coupling), "--steps", 2)
+                self.run_scene(scene(sides={**stream, "x upper": inflow(-1., 0.)}, solids={"Beam": body}, coupling=coupling), "--steps", 2)
+            ramp = {"x lower": {**inflow(1., 0.), "Velocity": ("min(t, 1)", "0")}}
+            self.assert_refused(scene(sides=ramp, solids={"Beam": beam}, coupling=coupling), "At 0.01 s", "could only be squeezed", code=3)
+            for wall in (soft(.25, 1., .5, .5), sheet):
+                self.run_scene(scene(sides={**stream, "x upper": {"Type": "open"}}, solids={"Wall": wall}, coupling=coupling), "--steps", 2)
+
     def test_gas_of_constant_volume_that_is_pressed(self):
         """Between a plate and water on a closed floor; with an open side below the water gives way."""
         air = {"Free Surface": {"Liquid": {"Pool": {"Type": "level", "Height": .6}}, "Trapped Air": "constant volume",

@@ -172,11 +172,11 @@ MotionWithContacts<dim> CoupledSolve<dim>::velocities(const StepContext<dim>& co
     end.solution = converge(context, momentum, nearby);
     end.solution.report.add_work(attempt.solution.report);
   }
-  if (end.solution.incompatibility > round_off) {
-    const double time = context.step.end();
-    const std::string impossible = system_.impossible_flow(time, context.constraints);
-    check_solve(impossible.empty(), "At {:.6g} s: {}", time, impossible);
-  }
+  const double time = context.step.end();
+  const std::string impossible = end.solution.incompatibility > round_off
+                                     ? system_.impossible_flow(time, context.constraints)
+                                     : system_.squeezing_flow(time);
+  check_solve(impossible.empty(), "At {:.6g} s: {}", time, impossible);
   return end;
 }
 

@@ -12,8 +12,10 @@ template <int dim>
 void check_start(const Components<dim>& components, const CoupledSystem<dim>& system, double time) {
   // Motions that begin at rest do so but for round-off.
   const double negligible = 1e-12 * components.fluid->fluid_volume();  // a second
-  const std::string impossible =
+  std::string impossible =
       system.impossible_flow(time, components.solids->constraints(time, time), negligible);
+  if (impossible.empty())
+    impossible = system.squeezing_flow(time, negligible);
   check_input(impossible.empty(), "At the start: {}", impossible);
 }
 }  // namespace
