@@ -32,17 +32,21 @@ std::string explanation(Components<dim>& components, TimeScheme<dim>& scheme,
                               "pressure solve"
                         : reads_pressure ? "on (viscosity > 0), reads the last pressure"
                                          : "on (viscosity > 0), without pressure");
-  int n_prescribed = 0, n_shells = 0;
+  int n_prescribed = 0, n_shells = 0, n_lines = 0;
   for (const auto& solid : solids.solids()) {
-    n_prescribed += solid.prescribed ? 1 : 0;
-    n_shells += solid.closed ? 0 : 1;
+    const bool has_surface = !is_line(solid);
+    n_lines += has_surface ? 0 : 1;
+    n_prescribed += solid.prescribed && has_surface ? 1 : 0;
+    n_shells += !solid.closed && has_surface ? 1 : 0;
   }
   if (const auto* output = fluid.output()) {
     for (const auto& [title, note] : output->notes())
       line(title, note);
   }
-  line("solids", fmt::format("{} ({} prescribed, {} thin shells), {} unknowns",
-                             solids.solids().size(), n_prescribed, n_shells, solids.n_unknowns()));
+  line("solids",
+       fmt::format("{} ({} prescribed, {} thin shells){}, {} unknowns",
+                   solids.solids().size() - n_lines, n_prescribed, n_shells,
+                   n_lines == 0 ? "" : fmt::format(" and {} lines", n_lines), solids.n_unknowns()));
   text += solid_rows(components, *scheme.system().surface());
   const GlobalIndex n_coupled =
       sum_all(comm, static_cast<GlobalIndex>(fluid.coupled_volumes().size()));

@@ -78,16 +78,27 @@ double speed_of_fall(const FluidDiscretization<dim>& fluid) {
   return std::sqrt(2 * gravity.cwiseAbs().dot(fluid.bounds().sizes()));
 }
 
-std::string duration_row(const TimeOptions& time, const StepBound& first, double shortest,
+template <int dim>
+double speed_of_sides(const FluidDiscretization<dim>& fluid, double begin, double end) {
+  constexpr int n_times = 33;
+  const double face = std::pow(fluid.smallest_length(), dim - 1);
+  double largest = 0;
+  for (int i = 0; i < n_times; ++i)
+    for (const PrescribedFlux& side : fluid.side_fluxes(begin + (end - begin) * i / (n_times - 1)))
+      for (const auto& [unknown, rate] : side.into)
+        largest = std::max(largest, std::abs(rate) / face);
+  return max_all(fluid.pressure_map()->getComm(), largest);
+}
+
+std::string duration_row(const TimeOptions& time, const StepBound& first, const StepBound& shortest,
                          double seconds) {
-  const double n_long = n_steps(time, first.dt), n_short = n_steps(time, shortest);
+  const double n_long = n_steps(time, first.dt), n_short = n_steps(time, shortest.dt);
   const std::string bound = first.reason.empty() ? "" : fmt::format(" ({})", first.reason);
   const std::string steps =
       n_short > n_long
           ? fmt::format(
-                "{:.0f} steps of {:.3g} s, as the first{}, to {:.0f} of {:.3g} s, as for "
-                "what falls through the domain",
-                n_long, first.dt, bound, n_short, shortest)
+                "{:.0f} steps of {:.3g} s, as the first{}, to {:.0f} of {:.3g} s, as for {}",
+                n_long, first.dt, bound, n_short, shortest.dt, shortest.reason)
           : fmt::format("{:.0f} steps of {:.3g} s{}", n_long, first.dt, bound);
   const std::string range = n_short > n_long
                                 ? fmt::format("{} to {}", duration_text(n_long * seconds),
@@ -99,5 +110,7 @@ std::string duration_row(const TimeOptions& time, const StepBound& first, double
 
 template double speed_of_fall(const FluidDiscretization<2>&);
 template double speed_of_fall(const FluidDiscretization<3>&);
+template double speed_of_sides(const FluidDiscretization<2>&, double, double);
+template double speed_of_sides(const FluidDiscretization<3>&, double, double);
 
 }  // namespace lockstep

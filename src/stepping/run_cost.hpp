@@ -18,9 +18,13 @@ std::string frames_row(const SceneOptions& options, double megabytes);
 /// Speed of what falls freely through the domain, from rest [m/s]; 0 without gravity. Local.
 template <int dim>
 double speed_of_fall(const FluidDiscretization<dim>& fluid);
+/// Largest speed at which sides let fluid in or out between two times [m/s], of 33 times evenly
+/// spaced; 0 without such sides. Collective.
+template <int dim>
+double speed_of_sides(const FluidDiscretization<dim>& fluid, double begin, double end);
 /// The row on the run's duration: if all steps are like the first, which took so many seconds, and
-/// if they are as short as `shortest` [s].
-std::string duration_row(const TimeOptions& time, const StepBound& first, double shortest,
+/// if they are like `shortest`, whose reason names what is that fast.
+std::string duration_row(const TimeOptions& time, const StepBound& first, const StepBound& shortest,
                          double seconds);
 
 }  // namespace lockstep

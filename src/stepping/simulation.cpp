@@ -269,10 +269,13 @@ std::string Simulation<dim>::explain(bool takes_step) {
     return text;
   const StepBound first = next_step();
   StepBound fast = first;
-  if (scene_options_.time.fixed_step == 0) {
-    const double suggested = components_.fluid->suggested_step(scene_options_.time.cfl,
-                                                               speed_of_fall(*components_.fluid));
-    fast = shorter(first, wanted_step(scene_options_.time, suggested));
+  const TimeOptions& time = scene_options_.time;
+  if (time.fixed_step == 0) {
+    const auto& fluid = *components_.fluid;
+    const double fall = speed_of_fall(fluid), sides = speed_of_sides(fluid, time.start, time.end);
+    const double suggested = fluid.suggested_step(time.cfl, std::max(fall, sides));
+    fast = shorter(first, wanted_step(time, suggested));
+    fast.reason = fall >= sides ? "what falls through the domain" : "the fastest inflow of the run";
   }
   const auto start = Clock::now();
   try {
@@ -280,8 +283,7 @@ std::string Simulation<dim>::explain(bool takes_step) {
   } catch (const Failure& failure) {
     return text + fmt::format("{:<22} the first step fails: {}\n", "duration", failure.what());
   }
-  return text +
-         duration_row(scene_options_.time, first, fast.dt, max_all(comm_, seconds_since(start)));
+  return text + duration_row(time, first, fast, max_all(comm_, seconds_since(start)));
 }
 
 template <int dim>

@@ -43,8 +43,13 @@ std::string doubt(const Box<dim>& box, const SolidDescription& solid,
   constexpr double fewest_cells = 2;
   const double h = fluid.smallest_length();
   const double size = solid.closed ? box.sizes().minCoeff() : box.sizes().maxCoeff();
-  if (!fluid.is_periodic() && part_outside<dim>(box, fluid.bounds()) > 1 - 1e-6)
+  constexpr double most_outside = 0.01;  // part of its box
+  const double outside = fluid.is_periodic() ? 0 : part_outside<dim>(box, fluid.bounds());
+  if (outside > 1 - 1e-6)
     return "lies outside of the domain, where there is no fluid";
+  if (outside > most_outside && solid.closed && solid.rigid && !solid.prescribed)
+    return fmt::format("is free to move, but {:.2g} % of its box lie outside of the domain",
+                       100 * outside);
   if (size < fewest_cells * h)
     return fmt::format("is {:.2g} cells across; the fluid sees bodies of two and more", size / h);
   return "";
@@ -110,6 +115,8 @@ std::string row(const Components<dim>& components, const SolidDescription& solid
                 const SolidState<dim>& state, const Box<dim>& box) {
   const FluidDiscretization<dim>& fluid = *components.fluid;
   const char* power = dim == 2 ? "m^2" : "m^3";
+  if (is_line(solid))
+    return "a line, which acts on its solids alone";
   std::string text = solid.prescribed ? "prescribed" : fmt::format("{:.3g} kg", state.mass);
   if (solid.closed)
     text += fmt::format(", {:.3g} {}", state.volume, power);
@@ -129,7 +136,27 @@ std::string row(const Components<dim>& components, const SolidDescription& solid
   return text;
 }
 
+/// Distance of the farthest node or end of a line that each solid carries from the solid's box [m].
+/// Collective.
+template <int dim>
+std::vector<double> attachment_distances(const SolidSystem<dim>& system,
+                                         const SurfaceSnapshot<dim>& surface) {
+  std::vector<double> distances(surface.solids().size(), 0);
+  for (const AttachedNode<dim>& node : system.attached()) {
+    const Box<dim>& box = surface.own_bounds(node.solid);
+    if (!box.isEmpty())
+      distances[node.solid] = std::max(distances[node.solid], box.exteriorDistance(node.position));
+  }
+  for (double& distance : distances)
+    distance = max_all(system.comm(), distance);
+  return distances;
+}
+
 }  // namespace
+
+bool is_line(const SolidDescription& solid) {
+  return !solid.closed && solid.simplex_begin == solid.simplex_end;
+}
 
 template <int dim>
 std::string solid_rows(const Components<dim>& components, const SurfaceSnapshot<dim>& surface) {
@@ -147,6 +174,8 @@ template <int dim>
 std::string solid_warnings(const Components<dim>& components, const SurfaceSnapshot<dim>& surface) {
   const std::vector<SolidDescription>& solids = surface.solids();
   const std::vector<char> sunk = sunk_solids(components, surface);
+  const std::vector<double> distances = attachment_distances(*components.solids, surface);
+  constexpr double far_cells = 2;
   std::string text;
   int n = 0;
   for (std::size_t i = 0; i < solids.size(); ++i) {
@@ -154,6 +183,9 @@ std::string solid_warnings(const Components<dim>& components, const SurfaceSnaps
     std::string what = box.isEmpty() ? "" : doubt<dim>(box, solids[i], *components.fluid);
     if (what.empty() && sunk[i])
       what = "floats in the liquid, but is all under its surface at the start";
+    if (what.empty() && distances[i] > far_cells * components.fluid->smallest_length())
+      what = fmt::format("carries what is attached to it up to {:.2g} m away from its box",
+                         distances[i]);
     if (!what.empty() && n++ < most_rows)
       text += fmt::format("{:<22} \"{}\" {}\n", "warning", shortened(solids[i].name), what);
   }

@@ -57,6 +57,23 @@ class Explain(unittest.TestCase):
         self.assertRegex(rows["duration"], r"^about .* to .* s: \d+ steps of .* s, as the first.*, to \d+ of .* s, as for what falls")
         self.assertNotIn("duration", self.explained({}, "--validate")[0])
 
+    def test_an_inflow_from_rest_bounds_later_steps(self):
+        """At 2 m/s a step of one CFL number crosses a cell of 1/16 m in .031 s."""
+        sides = {"x lower": {"Type": "inflow", "Velocity": ("2*min(10*t, 1)", "0")}, "x upper": {"Type": "open"}}
+        rows, _ = self.explained({}, Domain={"Cells": (16, 16), "Sides": sides}, Time={"End": 1., "CFL": 1.})
+        self.assertRegex(rows["duration"], r", to 32 of 0.0312 s, as for the fastest inflow of the run; ")
+
+    def test_lines(self):
+        """They are neither solids nor shells, and end on what holds them."""
+        def rope(y):
+            return {"Type": "rope", "Solids": ("space", "Crate"), "Points": (.5, 1., .5, y), "Stiffness": 1.}
+        rows, warnings = self.explained({"Crate": box(.5, .25, .5, .5), "Rope": rope(.7), "Flag": SHEET})
+        self.assertRegex(rows["solids"], r"^2 \(0 prescribed, 1 thin shells\) and 1 lines, ")
+        self.assertEqual(rows["Rope"], "a line, which acts on its solids alone")
+        self.assertEqual(warnings, [])
+        self.assertEqual(self.explained({"Crate": box(.5, .25, .5, .5), "Rope": rope(.875)})[1],
+                         ['"Crate" carries what is attached to it up to 0.25 m away from its box'])
+
     def test_an_empty_tank(self):
         jet = {"Shape": "ball", "Center": (.5, .8), "Radius": .1, "Liquid": True, "Velocity": (0., -1.)}
         surface = {"Interface": {"Type": "particle level set"}}
@@ -71,8 +88,9 @@ class Explain(unittest.TestCase):
         self.assertEqual(rows[""], "and 10 more")
 
     def test_warnings(self):
-        solids = {"Crumb": box(.1, .5, .5, .5), "Far": box(.25, .25, 3., .5), "Big": box(.25, .25, .25, .25)}
+        solids = {"Crumb": box(.1, .5, .5, .5), "Far": box(.25, .25, 3., .5), "Big": box(.25, .25, .25, .25), "Half": box(.25, .25, 1., .8)}
         self.assertEqual(self.explained(solids)[1], [
+            '"Half" is free to move, but 50 % of its box lie outside of the domain',
             '"Crumb" is 1.6 cells across; the fluid sees bodies of two and more',
             '"Far" lies outside of the domain, where there is no fluid'])
         pool = {"Gravity": (0., -9.8), "Free Surface": {"Liquid": {"Pool": {"Type": "level", "Height": .75}}}}
