@@ -144,6 +144,8 @@ int run_study(const Study& study, const Arguments& arguments) {
   write_file_atomically(directory + "/table.md", table_markdown(study, table) +
                                                      orders_markdown(study, table) +
                                                      targets_markdown(study, table));
+  if (const std::string note = note_on_abscissa(study, table); !note.empty())
+    std::cerr << "converge: " << note << "\n";
   if (!table.empty())
     plot(directory, "plot-study", "table.csv", "plot.png");
   const std::string curves = curves_csv(study, cases, outcomes, tell);

@@ -145,6 +145,27 @@ std::optional<double> extrapolate(const std::vector<StudyRow>& rung_rows) {
   return rung_rows.back().value + found->last / (std::pow(found->ratio, found->order) - 1);
 }
 
+std::string note_on_abscissa(const Study& study, const std::vector<StudyRow>& rows) {
+  if (!is_resolution(study))
+    return "";
+  for (const Quantity& quantity : study.quantities) {
+    for (const auto& rungs : rows_by_series(rows, quantity.name)) {
+      const auto is_as_first = [&](const StudyRow& row) {
+        return std::abs(row.abscissa - rungs.front().abscissa) <=
+               round_off * std::abs(row.abscissa);
+      };
+      if (rungs.size() > 1 && rungs.front().error &&
+          std::all_of(rungs.begin(), rungs.end(), is_as_first))
+        return fmt::format(
+            "The abscissa \"{}\" is {:.4g} at all rungs of \"{}\", so there are no orders: give "
+            "\"Ladder\" an \"Abscissa\" that changes along it, such as dt, h or a formula of "
+            "\"{}\".",
+            study.abscissa, rungs.front().abscissa, rungs.front().series, study.ladder_name);
+    }
+  }
+  return "";
+}
+
 std::string orders_markdown(const Study& study, const std::vector<StudyRow>& rows) {
   std::string lines;
   for (const Quantity& quantity : study.quantities) {

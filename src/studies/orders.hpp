@@ -34,6 +34,10 @@ std::optional<GridConvergence> grid_convergence(const std::vector<StudyRow>& run
 /// three, that one and 1 or 2. Nothing otherwise.
 std::optional<double> extrapolate(const std::vector<StudyRow>& rung_rows);
 
+/// A sentence if errors stand along a ladder of resolution whose abscissa is the same at all rungs
+/// of a series, so that it has no orders; else empty.
+std::string note_on_abscissa(const Study& study, const std::vector<StudyRow>& rows);
+
 /// A table of all these, one line a series; empty without any, as along ladders of no resolution.
 /// Quantities that ought to be 0 have orders alone, since the rest is relative.
 std::string orders_markdown(const Study& study, const std::vector<StudyRow>& rows);

@@ -300,9 +300,9 @@ ParameterList study_parameters() {
   declare_required<ParameterArray<double>>(ladder, "Values", "One rung each, the finest last.");
   declare_at_least(ladder, "Usual Rungs", 0, 0,
                    "Number of rungs that are run unless --rungs says otherwise; 0: all.");
-  declare(ladder, "Abscissa", "h",
+  declare(ladder, "Abscissa", "",
           "Formula of the abscissa, against which errors are plotted, of constants, h, dt, cells, "
-          "ranks. Orders "
+          "ranks. Left out: dt along a ladder named dt, else h. Orders "
           "of convergence are taken in it, unless it is the ladder's constant itself (and not h or "
           "dt): along density ratios, say, there are none.");
   declare(ladder, "Title", "", "Name of the abscissa in plots; h, dt, cells and ranks have one.");
@@ -344,6 +344,8 @@ Study read_study(const std::string& file) {
   study.ladder_values = ladder.get<ParameterArray<double>>("Values").toVector();
   study.usual_rungs = ladder.get<int>("Usual Rungs");
   study.abscissa = ladder.get<std::string>("Abscissa");
+  if (study.abscissa.empty())
+    study.abscissa = study.ladder_name == "dt" ? "dt" : "h";
   study.abscissa_name = ladder.get<std::string>("Title");
   study.abscissa_unit = ladder.get<std::string>("Unit");
   study.series = read_all_series(list, file);

@@ -50,6 +50,23 @@ TEST(FittedOrder, IsTheSlopeOfAllErrors) {
   EXPECT_NEAR(fitted->standard_error, std::sqrt(1. / 12), 1e-12);
 }
 
+TEST(Abscissa, OneThatDoesNotChangeIsTold) {
+  const Study study = study_along("h");
+  const auto along = [&](const std::vector<double>& abscissas) {
+    return note_on_abscissa(study, with_errors(rungs_of(abscissas, {0, 0, 0}), {4, 2, 1}));
+  };
+
+  EXPECT_EQ(along({1, 0.5, 0.25}), "");
+  EXPECT_THAT(along({0.25, 0.25, 0.25}),
+              testing::StartsWith(
+                  "The abscissa \"h\" is 0.25 at all rungs of \"flux\", so there are no orders"));
+  EXPECT_EQ(note_on_abscissa(study, rungs_of({1, 1, 1}, {0, 0, 0})), "") << "no errors";
+  EXPECT_EQ(note_on_abscissa(study_along("ratio"),
+                             with_errors(rungs_of({1, 1, 1}, {0, 0, 0}), {4, 2, 1})),
+            "")
+      << "a ladder of something else";
+}
+
 TEST(FittedOrder, APowerHasNoStandardError) {
   const auto fitted =
       fitted_order(with_errors(rungs_of({1, 0.5, 0.3, 0.1}, {0, 0, 0, 0}), {3, 0.75, 0.27, 0.03}));

@@ -420,4 +420,23 @@ TEST_F(Runs, SymbolsOfAStudyFileAreStrict) {
   }
 }
 
+TEST_F(Runs, TheAbscissaIsTheStepAlongALadderOfSteps) {
+  const std::string file = folder_ + "/study.xml";
+  for (const auto& [ladder, abscissa] : {std::pair("dt", "dt"), std::pair("n", "h")}) {
+    std::ofstream(file) << R"xml(<ParameterList name="Study">
+  <Parameter name="Scene" type="string" value="scene.xml"/>
+  <ParameterList name="Ladder">
+    <Parameter name="Name" type="string" value=")xml"
+                        << ladder << R"xml("/>
+    <Parameter name="Values" type="Array(double)" value="{4, 8}"/>
+  </ParameterList>
+  <ParameterList name="Quantities">
+    <ParameterList name="speed"><Parameter name="Expression" type="string" value="step"/>
+    </ParameterList>
+  </ParameterList>
+</ParameterList>)xml";
+    EXPECT_EQ(read_study(file).abscissa, abscissa);
+  }
+}
+
 }  // namespace lockstep::test
