@@ -90,9 +90,9 @@ class Explain(unittest.TestCase):
     def test_warnings(self):
         solids = {"Crumb": box(.1, .5, .5, .5), "Far": box(.25, .25, 3., .5), "Big": box(.25, .25, .25, .25), "Half": box(.25, .25, 1., .8)}
         self.assertEqual(self.explained(solids)[1], [
-            '"Half" is free to move, but 50 % of its box lie outside of the domain',
             '"Crumb" is 1.6 cells across; the fluid sees bodies of two and more',
-            '"Far" lies outside of the domain, where there is no fluid'])
+            '"Far" lies outside of the domain, where there is no fluid',
+            '"Half" is free to move, but 50 % of its box lie outside of the domain'])
         pool = {"Gravity": (0., -9.8), "Free Surface": {"Liquid": {"Pool": {"Type": "level", "Height": .75}}}}
         solids = {"Cork": box(.25, .25, .25, .25), "Raft": box(.25, .25, .7, .75), "Stone": {**box(.2, .2, .7, .25), "Density": 3000.}}
         self.assertEqual(self.explained(solids, Fluid=pool)[1],
