@@ -115,7 +115,7 @@ class Scenes(Folder):
             self.open(tank(), settings={"Time/End": "long"})
 
     def test_settings_know_the_constants(self):
-        settings = {"Domain/Cells": ("[2*N]", "[N]"), "Fluid/Density": "[100*N]"}
+        settings = {"Domain/Upper": (2, 1), "Domain/Cells": ("[2*N]", "[N]"), "Fluid/Density": "[100*N]"}
         with self.open(tank(Constants={"N": 8}), settings=settings) as run:
             self.assertEqual(run.grid.cells, (16, 8))
         with self.assertRaisesRegex(lockstep.InputError, 'Did you mean "N"'):
