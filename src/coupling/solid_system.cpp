@@ -80,9 +80,11 @@ void SolidSystem<dim>::go_round(const Box<dim>& domain, const std::array<bool, d
   for (const AttachedNode<dim>& node : attached_)
     carriers[node.solid] = 1;
   max_over_ranks(comm_, carriers);
-  for (std::size_t i = 0; i < solids_.size(); ++i)
-    wanted[i] =
-        solids_[i].closed && solids_[i].rigid && !solids_[i].prescribed && carriers[i] == 0 ? 1 : 0;
+  for (std::size_t i = 0; i < solids_.size(); ++i) {
+    const SolidDescription& solid = solids_[i];
+    const bool is_tied = carriers[i] != 0 || (!solid.rigid && carried_[solid.model] != 0);
+    wanted[i] = solid.closed && !solid.prescribed && !is_tied ? 1 : 0;
+  }
   repeated_ = RepeatedSolids<dim>(domain, periodic, margin, solids_, surface(), std::move(wanted));
 }
 

@@ -36,9 +36,9 @@ class SolidSystem {
   RCP<const Map> map() const { return map_; }             ///< never null
   const Communicator& comm() const { return comm_; }
 
-  /// Lets closed rigid solids that move freely go round a domain with periodic axes: snapshots show
-  /// them wherever it has them, up to `margin` [m] beyond its sides. Before the first snapshot.
-  /// Collective.
+  /// Lets closed solids that move freely, attached to no other, go round a domain with periodic
+  /// axes: snapshots show them wherever it has them, up to `margin` [m] beyond its sides. Before
+  /// the first snapshot. Collective.
   void go_round(const Box<dim>& domain, const std::array<bool, dim>& periodic, double margin);
   const RepeatedSolids<dim>& repeated() const { return repeated_; }  ///< solids that go round
   /// Returns the image of x that is nearest to the solid's own place, which goes on beyond periodic

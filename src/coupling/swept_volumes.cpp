@@ -44,17 +44,51 @@ struct SoftRows {
   std::vector<char> is_closed;             ///< by number
 };
 
+/// The domain without the sides that a solid, by its number in the stack, goes through and comes
+/// back.
+template <int dim>
+Box<dim> room_of(const SolidSystem<dim>& solids, int solid, Box<dim> domain) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < dim && solids.repeated().includes(solid); ++a)
+    if (solids.repeated().images().period[a] > 0) {
+      domain.min()[a] = -far;
+      domain.max()[a] = far;
+    }
+  return domain;
+}
+
+/// `VolumeSweeper::can_sweep` of the solids of a model, the first of which has a number in the
+/// stack. Collective.
+template <int dim>
+std::vector<char> can_sweep(const VolumeSweeper<dim>& sweeper, const SolidSystem<dim>& solids,
+                            int first, const Box<dim>& domain) {
+  std::vector<char> can = sweeper.can_sweep(domain);
+  std::vector<char> anywhere;
+  for (std::size_t s = 0; s < can.size(); ++s) {
+    const int solid = first + static_cast<int>(s);
+    if (!solids.repeated().includes(solid))
+      continue;
+    if (anywhere.empty())
+      anywhere = sweeper.can_sweep(room_of<dim>(solids, solid, domain));
+    can[s] = anywhere[s];
+  }
+  return can;
+}
+
 template <int dim>
 SoftRows soft_rows(const SolidSystem<dim>& solids, const Box<dim>& domain) {
   SoftRows rows;
+  int first = 0;
   for (int m = 0; m < solids.n_models(); ++m) {
+    const int here = first;
+    first += static_cast<int>(solids.model(m).solids().size());
     const auto* sweeper = solids.model(m).sweeper();
     const std::size_t begin = rows.solid.size();
     rows.solid.resize(begin + solids.model(m).dof_map()->getNodeNumElements(), -1);
     rows.swept.resize(rows.solid.size(), 0);
     if (!sweeper)
       continue;
-    const std::vector<char> can = sweeper->can_sweep(domain);
+    const std::vector<char> can = can_sweep<dim>(*sweeper, solids, here, domain);
     std::vector<int> number(can.size(), -1);
     for (std::size_t s = 0; s < can.size(); ++s) {
       if (!can[s])
@@ -211,9 +245,11 @@ void share_others(Pushes& pushes) {
 template <int dim>
 bool others_keep_volume(const SolidSystem<dim>& solids, const SoftRows& soft,
                         const Box<dim>& domain) {
+  int number = 0;
   for (int m = 0; m < solids.n_models(); ++m) {
     const SurfaceMesh<dim>& surface = solids.model(m).surface();
     for (std::size_t s = 0; s < solids.model(m).solids().size(); ++s) {
+      const Box<dim> room = room_of<dim>(solids, number++, domain);
       if (std::binary_search(soft.names.begin(), soft.names.end(),
                              std::make_pair(m, static_cast<int>(s))))
         continue;
@@ -223,7 +259,7 @@ bool others_keep_volume(const SolidSystem<dim>& solids, const SoftRows& soft,
       if (!solid.closed || !(solid.rigid || solid.prescribed))
         return false;
       for (int v = solid.vertex_begin; v < solid.vertex_end; ++v) {
-        if (!domain.contains(surface.vertices[v]))
+        if (!room.contains(surface.vertices[v]))
           return false;
       }
     }

@@ -38,6 +38,17 @@ void RunWarnings<dim>::warn_of_volume(long long step, const LiquidReport& liquid
       step, liquid.lost / all, off / all);
 }
 
+namespace {
+/// True if contact does not see across periodic sides: it does among rigid solids alone.
+template <int dim>
+bool is_contact_blind(const Components<dim>& components) {
+  const std::vector<SolidDescription>& solids = components.solids->solids();
+  return components.contact && solids.size() > 1 &&
+         std::any_of(solids.begin(), solids.end(),
+                     [](const SolidDescription& solid) { return !solid.rigid; });
+}
+}  // namespace
+
 template <int dim>
 void RunWarnings<dim>::warn_of_periodic_sides(long long step, const Components<dim>& components,
                                               const Log& log) {
@@ -48,11 +59,13 @@ void RunWarnings<dim>::warn_of_periodic_sides(long long step, const Components<d
   const std::array<bool, dim> periodic = fluid.periodic_axes();
   const Box<dim> domain = fluid.bounds();
   const SolidSystem<dim>& all = *components.solids;
+  const bool is_blind = is_contact_blind(components);
   int i = 0;
   for (int m = 0; m < all.n_models(); ++m)
     for (const SolidDescription& solid : all.model(m).solids()) {
       Box<dim> box;
-      const bool may_be_lost = !all.repeated().includes(i++) && !solid.prescribed;
+      const bool comes_back = all.repeated().includes(i++);
+      const bool may_be_lost = !solid.prescribed && (!comes_back || is_blind);
       for (int v = solid.vertex_begin; v < solid.vertex_end && may_be_lost; ++v)
         box.extend(all.model(m).surface().vertices[v]);
       for (int a = 0; a < dim && !box.isEmpty() && !of_periodic_sides_; ++a) {
@@ -62,10 +75,15 @@ void RunWarnings<dim>::warn_of_periodic_sides(long long step, const Components<d
           continue;
         of_periodic_sides_ = true;
         log.warning(
-            "Step {}: \"{}\" goes through a periodic side along {}. Fluid and closed rigid bodies "
-            "shorter than the domain come in again at the other side, this one does not: what of "
-            "it is beyond the side meets neither fluid nor solids. Later ones are not reported.",
-            step, solid.name, axis_names[a]);
+            "Step {}: \"{}\" goes through a periodic side along {}. {} Later ones are not "
+            "reported.",
+            step, solid.name, axis_names[a],
+            comes_back
+                ? "It comes in again at the other side, but beside solids that deform contact "
+                  "does not see across such sides: what of it is beyond goes through others."
+                : "Fluid and closed solids shorter than the domain come in again at the other "
+                  "side, this one does not: what of it is beyond the side meets neither fluid "
+                  "nor solids.");
       }
     }
 }

@@ -104,7 +104,7 @@ std::string periodic_warning(const SolidSystem<dim>& system,
     if (periodic[a])
       axes.push_back("xyz"[a]);
   return fmt::format(
-      "{:<22} the domain is periodic along {} for fluid and closed rigid bodies shorter than it: "
+      "{:<22} the domain is periodic along {} for fluid and closed solids shorter than it: "
       "what of \"{}\"{} goes through such a side meets neither fluid nor solids beyond it\n",
       "warning", fmt::join(axes, " and "), shortened(first->name),
       std::count_if(first, solids.end(), is_free) > 1 ? " and other free solids" : "");

@@ -6,7 +6,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scene_xml import xml  # noqa: E402
-from simulation import column, histories, simulate, table  # noqa: E402
+from simulation import attempt, column, histories, simulate, table  # noqa: E402
 
 COUPLINGS = ("mixed face", "flux")
 PERIODIC_X = {"x lower": {"Type": "periodic"}, "x upper": {"Type": "periodic"}}
@@ -16,6 +16,11 @@ STEP = .02
 def ball(position, density=1.5, **more):
     return {"Type": "rigid body", "Geometry": {"Shape": "ball", "Radius": .13, "Mesh Spacing": .03}, "Position": position,
             **({"Density": density} if density else {}), **more}
+
+
+def soft_ball(position, density=1.5, **more):
+    return {"Type": "deformable body", "Geometry": {"Shape": "ball", "Radius": .13, "Mesh Spacing": .05}, "Position": position,
+            "Density": density, "Material": {"Type": "neo-hookean", "Young's Modulus": 20., "Poisson's Ratio": .3}, **more}
 
 
 def sheared(dim, speed):
@@ -48,9 +53,9 @@ class GoingRound(unittest.TestCase):
             scale = max(map(abs, here)) + 1e-3
             self.assertLess(max(abs(a - b) for a, b in zip(here, there)), tolerance * scale)
 
-    def states(self, dim, coupling, x, z=.5, steps=12, ranks=1, names=None, **more):
+    def states(self, dim, coupling, x, z=.5, steps=12, ranks=1, names=None, made=ball, **more):
         position = (x, .27, z)[:dim]
-        _, bodies = histories(scene(dim, {"Ball": ball(position)}, coupling, cells=32 if dim == 2 else 24, **more),
+        _, bodies = histories(scene(dim, {"Ball": made(position)}, coupling, cells=32 if dim == 2 else 24, **more),
                               "--steps", steps, ranks=ranks)
         return columns_of(bodies, names or (("vx", "vy", "wz", "y") if dim == 2 else ("vx", "vy", "vz", "wz", "y")))
 
@@ -60,6 +65,39 @@ class GoingRound(unittest.TestCase):
             for x, ranks in ((1., 1), (.03125, 1), (4.5, 1), (-1., 1), (1., 2)):
                 with self.subTest(coupling=coupling, x=x, ranks=ranks):
                     self.assert_same(middle, self.states(2, coupling, x, ranks=ranks), 1e-6)
+
+    def test_no_place_is_another_for_what_is_soft(self):
+        """In space a ball of few elements moves aside by 1e-7 m/s a cell farther on, seam or not."""
+        for coupling in COUPLINGS:
+            for dim, steps, tolerance, places in ((2, 12, 1e-6, ((1., .5, 1), (.03125, .5, 1), (-1., .5, 1), (4.5, .5, 2), (1., .5, 2))),
+                                                  (3, 3, 3e-4, ((1., 0., 2),))):
+                middle = self.states(dim, coupling, .5, steps=steps, made=soft_ball)
+                for x, z, ranks in places:
+                    with self.subTest(coupling=coupling, dim=dim, x=x, ranks=ranks):
+                        self.assert_same(middle, self.states(dim, coupling, x, z, steps=steps, ranks=ranks, made=soft_ball), tolerance)
+
+    def test_a_soft_body_in_a_stream_keeps_going(self):
+        for coupling in COUPLINGS:
+            with self.subTest(coupling=coupling):
+                solids = {"Ball": soft_ball((.5, .25), Velocity=(1., 0.))}
+                history, bodies = histories(scene(2, solids, coupling, speed=0., velocity=(1., 0.), gravity=(0., 0.), Viscosity=0.),
+                                            "--steps", 120)
+                x, vx, vy = columns_of(bodies, ("x", "vx", "vy"))
+                self.assertGreater(x[-1], 2.8)
+                self.assertLess(max(abs(v - 1) for v in vx), 1e-6)
+                self.assertLess(max(map(abs, vy)), 1e-6)
+                self.assertLess(max(column(history, "momentum_error")), 1e-9)
+
+    def test_contact_with_what_is_soft_ends_at_the_seam(self):
+        """The log says so; of a lone soft body there is nothing to say."""
+        for others, told in (({}, 0), ({"Stone": ball((.2, .25), density=5.)}, 1)):
+            with self.subTest(told=told), tempfile.TemporaryDirectory() as name:
+                file = Path(name) / "scene.xml"
+                file.write_text(scene(2, {"Ball": soft_ball((.85, .25), Velocity=(1., 0.)), **others}, "flux", velocity=(1., 0.),
+                                      more={"Contact": {"Type": "gauss seidel"}}))
+                result = attempt(file, Path(name) / "output", "--steps", 3)
+                self.assertEqual(result.returncode, 0, result.stdout)
+                self.assertEqual(result.stdout.count("contact does not see across such sides"), told, result.stdout)
 
     def test_no_place_is_another_in_space(self):
         for coupling in COUPLINGS:
@@ -75,20 +113,21 @@ class GoingRound(unittest.TestCase):
                 self.assert_same(middle, self.states(2, coupling, 1., gravity=(1., -.5)), 1e-6)
 
     def test_bodies_float_across_the_seam(self):
-        """A disc falls into a pool and goes along; liquid as fractions has no random particles."""
+        """A disc, rigid or soft, falls into a pool and goes along; liquid as fractions has no random particles."""
         sides = {**PERIODIC_X, "y lower": {"Type": "wall"}, "y upper": {"Type": "open"}}
         pool = {"Interface": {"Type": "volume of fluid"}, "Liquid": {"Pool": {"Type": "level", "Height": .5}}}
-        for coupling in COUPLINGS:
+        rubber = {"Material": {"Type": "neo-hookean", "Young's Modulus": 2e4}}
+        for coupling, made, more in [(c, *kind) for c in COUPLINGS for kind in ((ball, {}), (soft_ball, rubber))]:
             found = []
             for x in (.5, 1.):
                 text = xml("Scene", {
                     "Dimension": 2, "Domain": {"Lower": (0., 0.), "Upper": (1., 1.), "Cells": (32, 32), "Sides": sides},
                     "Fluid": {"Density": 1000., "Gravity": (0., -9.81), "Free Surface": pool},
-                    "Solids": {"Ball": ball((x, .55), density=500., Velocity=(.5, 0.))}, "Coupling": {"Type": coupling},
+                    "Solids": {"Ball": made((x, .55), density=500., Velocity=(.5, 0.), **more)}, "Coupling": {"Type": coupling},
                     "Solver": {"Tolerance": 1e-11}, "Output": {"Frames": False}, "Time": {"End": 100., "Fixed Step": .01}})
                 history, bodies = histories(text, "--steps", 8)
                 found.append([*columns_of(bodies, ("vx", "vy", "wz", "y")), column(history, "liquid_volume")])
-            with self.subTest(coupling=coupling):
+            with self.subTest(coupling=coupling, soft=made is soft_ball):
                 self.assert_same(found[0], found[1], 1e-6)
 
     def test_a_body_in_a_stream_keeps_going(self):
