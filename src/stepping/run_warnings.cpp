@@ -118,9 +118,12 @@ void RunWarnings<dim>::after_step(long long step, const StepReport<dim>& report,
         "places, which contact cannot prevent; let them move less, or less far in a step.",
         step, report.contact_position.n_crossings);
   }
-  constexpr double most_left = 1e-3;  // times g dt
+  constexpr double most_left = 1e-3;   // times g dt
+  constexpr double round_off = 1e-10;  // times a cell in a step
   const double left = std::max(report.contact_position.residual, report.contact_velocity.residual);
-  if (left > most_left * report.dt * components.fluid->gravity().norm() && !of_contact_) {
+  const double least = std::max(most_left * report.dt * components.fluid->gravity().norm(),
+                                round_off * components.fluid->smallest_length() / report.dt);
+  if (left > least && !of_contact_) {
     of_contact_ = true;
     log.warning(
         "Step {}: solves and contacts still differ by {:.2g} m/s where solids touch; momentum is "

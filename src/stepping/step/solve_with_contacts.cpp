@@ -308,11 +308,12 @@ template <int dim>
 ContactReport<dim> CoupledSolve<dim>::decide(const StepContext<dim>& context,
                                              const ContactResponse& response, Vector& velocity) {
   ScopedStage stage(timers_, "contact");
+  constexpr double round_off = 1e-9;
   const Vector before(velocity, Teuchos::Copy);
   ContactReport<dim> report = components_.contact->decide(*components_.solids, phase_of(context),
                                                           context.step.dt, velocity, response);
   check_solve(report.n_contacts == 0 || !report.held.empty() || !report.sliding.empty() ||
-                  difference(velocity, before)->norm2() == 0,
+                  difference(velocity, before)->norm2() <= round_off * before.norm2(),
               "The contact model \"{}\" pushes at {} contacts and returns no rows that the coupled "
               "solve could hold (`ContactReport::held`): the next solve would undo what it did.",
               components_.contact->name(), report.n_contacts);
