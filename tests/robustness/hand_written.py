@@ -44,14 +44,20 @@ BASE = """<ParameterList name="Scene">
 SCENE = """<ParameterList name="Scene">
   <Parameter name="Include" type="string" value="base.xml"/>
   <ParameterList name="Constants">
-    <Parameter name="R" type="double" value="0.08"/>
+    <Parameter name="step" type="double" value="30"/>
   </ParameterList>
   <ParameterList name="Fluid">
     <Parameter name="Gravity" type="Array(double)" value="{0, -9.8}"/>
   </ParameterList>
   <ParameterList name="Solids">
-    <ParameterList name="Ball 3">
-      <Parameter name="Density" type="double" value="[max(1, 30*n)]"/>
+    <ParameterList name="Ball">
+      <ParameterList name="Copies">
+        <ParameterList name="Overrides">
+          <ParameterList name="3">
+            <Parameter name="Density" type="double" value="[max(1, step*n)]"/>
+          </ParameterList>
+        </ParameterList>
+      </ParameterList>
     </ParameterList>
   </ParameterList>
 </ParameterList>

@@ -228,7 +228,7 @@ def mutated(rng, data, mutators):
         mutator = rng.choice(mutators)
         try:
             data = mutator(rng, data)
-        except (ElementTree.ParseError, OSError, IndexError, KeyError, ValueError, RuntimeError):
+        except (ElementTree.ParseError, OSError, OverflowError, IndexError, KeyError, ValueError, RuntimeError):
             mutator = overwrite
             data = mutator(rng, data)
         names.append(mutator.__name__)
