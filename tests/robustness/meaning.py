@@ -110,7 +110,7 @@ def judge_parameters(before, after):
     except (ElementTree.ParseError, ValueError, LookupError):
         return "no XML", MUST
     try:
-        if root.tag != "ParameterList" or any((text or "").strip() for item in root.iter() for text in (item.text, item.tail)):
+        if root.tag != "ParameterList" or set(root.attrib) - {"name"} or any((text or "").strip() for item in root.iter() for text in (item.text, item.tail)):
             raise Faulty("what is no parameter")
         new = parameters_of(root)
     except Faulty as fault:
