@@ -154,6 +154,19 @@ class RecordingContact : public ContactModel<2> {
   Calls& calls_;
 };
 
+/// Contact that stops all solids and does not tell the coupled solve of it.
+class SilentContact : public ContactModel<2> {
+ public:
+  std::string name() const override { return "silent"; }
+  ContactReport<2> resolve(const SolidSystem<2>&, ContactPhase, double, Vector& velocity,
+                           const ContactResponse&) override {
+    ContactReport<2> report;
+    report.n_contacts = 1;
+    velocity.putScalar(0);
+    return report;
+  }
+};
+
 /// The direct strategy, which writes down what is solved.
 class RecordingStrategy : public SolverStrategy {
  public:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/errors.hpp"
 #include "mixedface/mixed_face_coupling.hpp"
 #include "recording.hpp"
 #include "stepping/step/time_scheme.hpp"
@@ -13,6 +14,8 @@ namespace lockstep::test {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 FakeBox<2> tank(double viscosity = 0) {
   FakeBox<2> box;
@@ -110,6 +113,14 @@ TEST(StepOrder, OfKickDriftKick) {
             "contact: velocities over 0.5", "fluid: project", "fluid: u = u*", "solids: V"));
   }
   EXPECT_EQ(recorded.scheme->time(), 4);
+}
+
+TEST(StepOrder, ContactThatHoldsNothingIsTold) {
+  Recorded recorded(tank());
+  recorded.components.contact = std::make_unique<SilentContact>();
+  EXPECT_THAT(
+      [&] { recorded.step(); },
+      ThrowsMessage<SolveError>(HasSubstr("\"silent\" pushes at 1 contacts and returns no rows")));
 }
 
 TEST(StepOrder, FluidAloneTakesOneSolve) {
