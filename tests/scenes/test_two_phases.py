@@ -214,8 +214,8 @@ class TwoPhases(unittest.TestCase):
                     self.assertLess(after - before - weight * (higher - lower), 1)
 
     def test_wind_drags_the_water_along(self):
-        """The water gains 4 % of its momentum by the wind, mean over the last of 1.5 s. It gained 19 %, and 43 % on cells half as large, while
-        what the waves flooded took over the velocity of the wind."""
+        """The water gains 4 % of its momentum by the wind, mean over the last of 1.5 s; 14 and 33 % on cells a half and a quarter as large, which
+        resolve more of the shear. It gained 19 % here while what the waves flooded took over the velocity of the wind."""
         def momentum(wind):
             with tempfile.TemporaryDirectory() as folder:
                 self.shipped(folder, "wave-and-wind", "--set", "Domain/Cells={64, 32}", "--set", f"Constants/wind={wind}")
