@@ -81,9 +81,9 @@ void RunWarnings<dim>::warn_of_periodic_sides(long long step, const Components<d
             comes_back
                 ? "It comes in again at the other side, but beside solids that deform contact "
                   "does not see across such sides: what of it is beyond goes through others."
-                : "Fluid and closed solids shorter than the domain come in again at the other "
-                  "side, this one does not: what of it is beyond the side meets neither fluid "
-                  "nor solids.");
+                : "Fluid and closed solids whose radius and 8 cells fit into half of the domain "
+                  "come in again at the other side, this one does not: what of it is beyond "
+                  "meets neither fluid nor solids.");
       }
     }
 }

@@ -104,8 +104,9 @@ std::string periodic_warning(const SolidSystem<dim>& system,
     if (periodic[a])
       axes.push_back("xyz"[a]);
   return fmt::format(
-      "{:<22} the domain is periodic along {} for fluid and closed solids shorter than it: "
-      "what of \"{}\"{} goes through such a side meets neither fluid nor solids beyond it\n",
+      "{:<22} the domain is periodic along {} for fluid and closed solids whose radius and 8 cells "
+      "fit into half of it: what of \"{}\"{} goes through such a side meets neither fluid nor "
+      "solids beyond it\n",
       "warning", fmt::join(axes, " and "), shortened(first->name),
       std::count_if(first, solids.end(), is_free) > 1 ? " and other free solids" : "");
 }

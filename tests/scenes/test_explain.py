@@ -109,7 +109,7 @@ class Explain(unittest.TestCase):
         for name in ("Cup", "Mug"):
             del fast[name]["Density"]
         round_and_round = {"Ball": box(.25, .25, .8, .25, Velocity=(5., 0.))}
-        warning = ('the domain is periodic along x for fluid and closed solids shorter than it: what of "Cup" and other free solids '
+        warning = ('the domain is periodic along x for fluid and closed solids whose radius and 8 cells fit into half of it: what of "Cup" and other free solids '
                    "goes through such a side meets neither fluid nor solids beyond it")
         self.assertEqual(self.explained(fast, Domain=domain)[1], [warning])
         self.assertEqual(self.explained({"Sill": fast["Sill"]}, Domain=domain)[1], [])

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mac/pressure/carried_pressure.hpp"
 #include "mac/pressure/pressure_system.hpp"
 #include "mac/state/initial_state.hpp"
 #include "mac/tiles/moving_tiles.hpp"
@@ -45,6 +46,14 @@ void MacFlow<dim>::project(CellField pressure) {
   scaled_pressure = std::move(pressure);
   subtract_gradient<dim>(domain, geometry, scaled_pressure, prediction);
   domain.halo.fill(prediction);
+}
+
+template <int dim>
+void MacFlow<dim>::carry_pressure(const MovingSurface<dim>& surface) {
+  if (geometry.state.surface && !liquid && accepted_step > 0)
+    lockstep::carry_pressure<dim>(domain, surface,
+                                  parameters.density * accepted_step * accepted_acceleration,
+                                  accepted_cells, accepted_pressure);
 }
 
 template <int dim>
