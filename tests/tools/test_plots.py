@@ -153,7 +153,7 @@ class Axes(Plots):
         self.check(figure)
         self.assertEqual(figure.axes[0].get_ylabel(), "level [m]")
         (legend,) = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
-        self.assertEqual([text.get_text() for text in legend.get_texts()], ["n = 8", "n = 16", "n = 32", "exact"])
+        self.assertEqual([text.get_text() for text in legend.get_texts()], ["n = 8", "n = 16", "n = 32", "reference"])
 
     def test_ticks(self):
         self.assertEqual(plot_style.log_ticks(0.03, 40), [0.1, 1, 10])
