@@ -115,7 +115,8 @@ void declare_sheet_mass(ParameterList& list) {
   declare_optional<double>(
       list, "Surface Density",
       "Mass per area as meshed [kg/m^2] (2D: [kg/m]); \"Density\" may take its place. 0: no mass "
-      "but that of the fluid lumped on it; then it must be fully implicit.");
+      "but that of the fluid lumped on it; then it must be fully implicit, in a scene whose "
+      "\"Contact/Type\" is \"none\".");
   set_at_least(list, "Surface Density", 0);
   declare_optional<double>(list, "Density",
                            "Density of the material [kg/m^3] (2D: [kg/m^2]): the mass per area is "

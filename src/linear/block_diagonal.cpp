@@ -210,7 +210,8 @@ std::string not_positive_definite(const std::string& name) {
   return fmt::format(
       "The {} is not positive definite: masses must be positive and D negative semidefinite. A "
       "node without mass that no mixed face sees needs a stiffness or damping that is implicit: "
-      "give its body a mass, bending stiffness or a coarser mesh.",
+      "give its body a mass, bending stiffness or a coarser mesh. Contact knows no stiffness: with "
+      "it bodies need a mass, or \"Contact/Type\" is \"none\".",
       name);
 }
 
