@@ -104,7 +104,8 @@ void declare_deformable_geometry(ParameterList& body) {
   declare_mesh_repair(list);
   declare_optional<double>(list, "Mesh Spacing",
                            "Longest step of the lattice of a generated mesh [m]; default one grid "
-                           "cell.");
+                           "cell. Linear elements are too stiff in bending: with 1, 2, 4 and 8 of "
+                           "them across a beam by a factor of 3.3 and by 60, 15 and 5 %.");
   for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Size", "Mesh Spacing"})
     set_positive(list, size);
 }

@@ -13,30 +13,17 @@ constexpr double least_thickness = 2;
 /// body creeps at 6e-6 sqrt(g L), and a solve for an implicit solid of 1e-3 did not converge in a
 /// step of many of its periods (docs/method.md, "Contact"; study contact-stability).
 constexpr double least_density = 2e-2;
+}  // namespace
 
-template <int dim>
-double area(const SurfaceMesh<dim>& mesh) {
-  double sum = 0;
-  for (const auto& simplex : mesh.simplices) {
-    std::array<Point<dim>, dim> corners;
-    for (int k = 0; k < dim; ++k)
-      corners[k] = mesh.vertices[simplex[k]];
-    sum += area_vector<dim>(corners).norm();
-  }
-  return sum;
-}
-
-/// Thickness of a plate with this ratio of volume and surface, of a body as compact as a ball its
-/// smallest extent [m].
 template <int dim>
 double thickness(const SurfaceSnapshot<dim>& surface, int solid) {
   const SurfaceMesh<dim> mesh = surface.mesh_of_solid(solid);
-  const double of_plate = 2 * volume_properties<dim>(mesh).measure / area<dim>(mesh);
+  const double of_plate =
+      2 * volume_properties<dim>(mesh).measure / shell_properties<dim>(mesh).measure;
   const double extent = surface.own_bounds(solid).sizes().minCoeff();
   constexpr double nearly = 0.8;  // part of a ball's or a cube's, whose ratio is extent / (2 dim)
   return of_plate >= nearly * extent / dim ? extent : of_plate;
 }
-}  // namespace
 
 template <int dim>
 CouplingChoice automatic_coupling(const SurfaceSnapshot<dim>& surface, double spacing,
@@ -53,12 +40,14 @@ CouplingChoice automatic_coupling(const SurfaceSnapshot<dim>& surface, double sp
                                  solid.density / density)};
     const double cells = thickness(surface, static_cast<int>(s)) / spacing;
     if (cells < least_thickness)
-      return {whole, fmt::format("\"{}\" is {:.2g} cells thick", solid.name, cells)};
+      return {whole, fmt::format("\"{}\" is {:.3g} cells thick", solid.name, cells)};
   }
   return any_closed ? CouplingChoice{"flux", "closed solids are not thin"}
                     : CouplingChoice{whole, "no solid is closed"};
 }
 
+template double thickness<2>(const SurfaceSnapshot<2>&, int);
+template double thickness<3>(const SurfaceSnapshot<3>&, int);
 template CouplingChoice automatic_coupling<2>(const SurfaceSnapshot<2>&, double, double);
 template CouplingChoice automatic_coupling<3>(const SurfaceSnapshot<3>&, double, double);
 

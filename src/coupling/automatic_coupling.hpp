@@ -14,11 +14,14 @@ struct CouplingChoice {
   std::string reason;
 };
 
+/// Thickness of the plate that has a closed solid's ratio of volume and surface, of a body as
+/// compact as a ball its smallest extent [m]. Local; the same on all ranks.
+template <int dim>
+double thickness(const SurfaceSnapshot<dim>& surface, int solid);
+
 /// The coupling that `Coupling/Type` = "automatic" stands for: "flux", whose errors are of second
 /// order, where each closed solid is not thin for cells of that size [m] and not far lighter
-/// than a fluid of that density [kg/m^dim], else "mixed face". Thickness is that of a plate with
-/// the solid's ratio of volume and surface; what is as compact as a ball is no plate. Local; the
-/// same on all ranks.
+/// than a fluid of that density [kg/m^dim], else "mixed face". Local; the same on all ranks.
 template <int dim>
 CouplingChoice automatic_coupling(const SurfaceSnapshot<dim>& surface, double spacing,
                                   double density);

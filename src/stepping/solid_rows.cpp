@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/shortened.hpp"
+#include "coupling/automatic_coupling.hpp"
 #include "interfaces/liquid.hpp"
 
 namespace lockstep {
@@ -51,8 +53,30 @@ std::string doubt(const Box<dim>& box, const SolidDescription& solid,
     return fmt::format("is free to move, but {:.2g} % of its box lie outside of the domain",
                        100 * outside);
   if (size < fewest_cells * h)
-    return fmt::format("is {:.2g} cells across; the fluid sees bodies of two and more", size / h);
+    return fmt::format("is {:.3g} cells across; the fluid sees bodies of two and more", size / h);
   return "";
+}
+
+/// Names a soft body that bends and has too few elements across, as far as its surface tells how
+/// large they are; empty: it has enough.
+template <int dim>
+std::string coarse_mesh(const SurfaceSnapshot<dim>& surface, int solid) {
+  if (!surface.solids()[solid].is_soft_body() || surface.own_bounds(solid).isEmpty())
+    return "";
+  constexpr double slender = 3;   // longest extent over thickness, from which a body bends
+  constexpr double enough = 3.5;  // elements, which surfaces tell of four at least
+  const SurfaceMesh<dim> mesh = surface.mesh_of_solid(solid);
+  const double area =
+      shell_properties<dim>(mesh).measure / static_cast<double>(mesh.simplices.size());
+  const double edge = dim == 2 ? area : std::sqrt(2 * area);  // legs of right triangles
+  const double across = thickness<dim>(surface, solid) / edge;
+  const double extent = surface.own_bounds(solid).sizes().maxCoeff();
+  if (extent < slender * across * edge || across >= enough)
+    return "";
+  return fmt::format(
+      "has about {:.0f} of its elements across; linear ones are too stiff in bending, 1 across by "
+      "a factor of 3, 2 by 60 %, 4 by 15 %, 8 by 5 %",
+      std::max(across, 1.0));
 }
 
 /// Solids that are lighter than the liquid and have all corners of their boxes under its surface.
@@ -187,8 +211,9 @@ std::string solid_warnings(const Components<dim>& components, const SurfaceSnaps
     if (what.empty() && distances[i] > far_cells * components.fluid->smallest_length())
       what = fmt::format("carries what is attached to it up to {:.2g} m away from its box",
                          distances[i]);
-    if (!what.empty() && n++ < most_rows)
-      text += fmt::format("{:<22} \"{}\" {}\n", "warning", shortened(solids[i].name), what);
+    for (const std::string& row : {what, coarse_mesh<dim>(surface, static_cast<int>(i))})
+      if (!row.empty() && n++ < most_rows)
+        text += fmt::format("{:<22} \"{}\" {}\n", "warning", shortened(solids[i].name), row);
   }
   return text + and_more(n) + periodic_warning<dim>(*components.solids, *components.fluid);
 }

@@ -98,6 +98,21 @@ class Explain(unittest.TestCase):
         self.assertEqual(self.explained(solids, Fluid=pool)[1],
                          ['"Cork" floats in the liquid, but is all under its surface at the start'])
 
+    def test_soft_bodies_that_bend_and_have_few_elements_across(self):
+        def soft(size, spacing):
+            return {"Type": "deformable body", "Density": 1000., "Position": (.5, .5), "Material": {"Young's Modulus": 1e6},
+                    "Geometry": {"Shape": "box", "Size": size, **({"Mesh Spacing": spacing} if spacing else {})}}
+        told = ('"Flap" has about {} of its elements across; linear ones are too stiff in bending, 1 across by a factor of 3, '
+                "2 by 60 %, 4 by 15 %, 8 by 5 %")
+        for size, spacing, expected in (((.125, .75), None, [told.format(2)]), ((.125, .75), .125, [told.format(1)]),
+                                        ((.125, .75), .125 / 4, []), ((.25, .25), None, [])):
+            self.assertEqual(self.explained({"Flap": soft(size, spacing)})[1], expected)
+
+    def test_what_is_a_little_less_than_two_cells_thick_is_not_called_two(self):
+        rows, warnings = self.explained({"Slat": box(.123, .5, .5, .5)})
+        self.assertIn('(automatic: "Slat" is 1.97 cells thick)', rows["coupling"])
+        self.assertEqual(warnings, ['"Slat" is 1.97 cells across; the fluid sees bodies of two and more'])
+
     def test_shells_do_not_come_back_through_periodic_sides(self):
         """Told before the run, and once in it, when the first goes through; not where they cannot, nor of held ones, nor of what goes round."""
         sides = {f"x {end}": {"Type": "periodic"} for end in ("lower", "upper")}
