@@ -16,7 +16,7 @@ Articulation<dim>::Articulation(std::vector<JointedBody<dim>> bodies,
   dofs_.first_rate = first_dof;
   dofs_.first_of_body.assign(bodies_.size(), no_index);
   for (Joint<dim>& joint : joints_) {
-    const int n = lockstep::n_rates<dim>(joint.kind);
+    const int n = joint.kind->n_rates();
     joint.q = Eigen::VectorXd::Zero(n);
     if (joint.first_rate >= 0)
       n_rates_ += n;
@@ -116,9 +116,9 @@ ControlLaw Articulation<dim>::control() const {
       const double kick = takes_kicks_ && has_moved_ ? begin_ + dt_ : begin_;
       times = {kick + late * dt_, (1 + late) * dt_ / 2, (1 + late) / 2};
       if (late < 1)
-        present.q = advanced<dim>(joint.kind, present.q, (late - 1) * dt_ / 2 * present.rate);
+        present.q = joint.kind->advanced(present.q, (late - 1) * dt_ / 2 * present.rate);
     }
-    const ControlLaw law = control_law<dim>(joint.kind, joint.control, present, times);
+    const ControlLaw law = control_law<dim>(*joint.kind, joint.control, present, times);
     all.constant.segment(joint.first_rate, law.constant.size()) = law.constant;
     all.slope.segment(joint.first_rate, law.slope.size()) = law.slope;
     std::copy(law.limited.begin(), law.limited.end(), all.limited.begin() + joint.first_rate);
@@ -134,7 +134,7 @@ void Articulation<dim>::begin_step(double time, double dt) {
   for (Joint<dim>& joint : joints_) {
     joint.at_begin = joint.at_kick = {joint.q, rates_of(joint)};
     if (joint.control.any_given())
-      joint.goal = given_motion<dim>(joint.kind, joint.control, joint.at_begin, time, dt);
+      joint.goal = given_motion<dim>(*joint.kind, joint.control, joint.at_begin, time, dt);
   }
 }
 
@@ -198,8 +198,8 @@ void Articulation<dim>::update_coordinates(const Eigen::VectorXd& change) {
   for (Joint<dim>& joint : joints_) {
     Eigen::VectorXd near = joint.q;
     if (joint.first_rate >= 0)
-      near = advanced<dim>(joint.kind, joint.q, change.segment(joint.first_rate, joint.q.size()));
-    joint.q = coordinates(joint.kind, place_of(joint, poses).pose, near);
+      near = joint.kind->advanced(joint.q, change.segment(joint.first_rate, joint.q.size()));
+    joint.q = joint.kind->coordinates(place_of(joint, poses).pose, near);
     if (takes_kicks_)
       joint.at_kick = {joint.q, rates_of(joint)};
   }

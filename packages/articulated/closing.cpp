@@ -54,9 +54,10 @@ class Rows {
       n_columns_ += n_twist<dim>;
     }
     for (const int j : problem.mechanism.joints) {
-      n_rows_ += static_cast<int>(
-          held_rows(problem.joints[j].kind, place_of(problem.joints[j], problem.poses).pose)
-              .size());
+      n_rows_ +=
+          static_cast<int>(problem.joints[j]
+                               .kind->held_rows(place_of(problem.joints[j], problem.poses).pose)
+                               .size());
       for (const CoordinateControl& control : problem.joints[j].control.coordinates)
         n_rows_ += control.given() ? 1 : 0;
     }
@@ -83,14 +84,14 @@ class Rows {
     for (const int j : problem_.mechanism.joints) {
       const Joint<dim>& joint = problem_.joints[j];
       const JointPlace<dim> place = place_of(joint, poses);
-      const std::vector<Screw<dim>> held = held_rows(joint.kind, place.pose);
-      const Eigen::VectorXd open = gap(joint.kind, place.pose);
+      const std::vector<Screw<dim>> held = joint.kind->held_rows(place.pose);
+      const Eigen::VectorXd open = joint.kind->gap(place.pose);
       for (std::size_t k = 0; k < held.size(); ++k)
         set(row++, held[k], open[k], {joint, place, poses}, rows, gaps);
       if (!joint.control.any_given())
         continue;
-      const std::vector<Screw<dim>> rates = rate_rows(joint.kind, place.pose);
-      const Eigen::VectorXd left = distance_to(joint.kind, place.pose, joint.goal.q);
+      const std::vector<Screw<dim>> rates = joint.kind->rate_rows(place.pose);
+      const Eigen::VectorXd left = joint.kind->distance_to(place.pose, joint.goal.q);
       for (int k = 0; k < left.size(); ++k) {
         if (joint.control.given(k))
           set(row++, rates[k], -left[k], {joint, place, poses}, rows, gaps);
@@ -264,8 +265,8 @@ void follow_rates(const ClosingProblem<dim>& problem, const Eigen::VectorXd& cha
     const Joint<dim>& joint = problem.joints[mechanism.carriers[b]];
     const int side = joint.sides[1].body == body ? 1 : 0;
     const auto n = static_cast<Eigen::Index>(joint.q.size());
-    const RelativePose<dim> goal = pose_of<dim>(
-        joint.kind, advanced<dim>(joint.kind, joint.q, change.segment(joint.first_rate, n)));
+    const RelativePose<dim> goal =
+        joint.kind->pose_of(joint.kind->advanced(joint.q, change.segment(joint.first_rate, n)));
     const JointSide<dim>& carrier = joint.sides[1 - side];
     const JointSide<dim>& own = joint.sides[side];
     const BodyPose<dim> parent = pose_of(poses, carrier.body);
@@ -295,8 +296,8 @@ double reach(const Mechanism& mechanism, const std::vector<Joint<dim>>& joints) 
 template <int dim>
 double largest_gap(const Joint<dim>& joint, const std::vector<BodyPose<dim>>& poses, double unit) {
   const RelativePose<dim> pose = place_of(joint, poses).pose;
-  const std::vector<Screw<dim>> held = held_rows(joint.kind, pose);
-  const Eigen::VectorXd open = gap(joint.kind, pose);
+  const std::vector<Screw<dim>> held = joint.kind->held_rows(pose);
+  const Eigen::VectorXd open = joint.kind->gap(pose);
   double largest = 0;
   for (std::size_t k = 0; k < held.size(); ++k) {
     const double scale = held[k].linear.isZero(0) ? 1 : 1 / unit;

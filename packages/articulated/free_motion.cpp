@@ -63,8 +63,7 @@ class Flyer {
     poses_ = std::move(poses);
     for (const int j : problem_.mechanism.joints) {
       const Joint<dim>& joint = problem_.joints[j];
-      coordinates_[j] =
-          lockstep::coordinates(joint.kind, place_of(joint, poses_).pose, coordinates_[j]);
+      coordinates_[j] = joint.kind->coordinates(place_of(joint, poses_).pose, coordinates_[j]);
     }
     return true;
   }

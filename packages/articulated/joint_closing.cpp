@@ -19,7 +19,7 @@ void JointConstraints<dim>::set_rates(const Mechanism& mechanism,
   const auto values = velocity.getDataNonConst();
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
     const Joint<dim>& joint = articulation_->joints()[mechanism.joints[j]];
-    const Eigen::VectorXd rates = change_to<dim>(joint.kind, joint.q, coordinates[j]) / dt;
+    const Eigen::VectorXd rates = joint.kind->change_to(joint.q, coordinates[j]) / dt;
     for (int k = 0; k < joint.q.size() && joint.first_rate >= 0; ++k) {
       const int row = velocity.getMap()->getLocalElement(articulation_->dofs().first_rate +
                                                          joint.first_rate + k);

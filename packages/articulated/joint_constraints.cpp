@@ -102,7 +102,8 @@ std::vector<JointLimit> JointConstraints<dim>::limits(double dt,
       arm = std::max(arm, side.body == space ? 0 : side.point.norm());
     const GlobalIndex first = articulation_->dofs().first_rate + joint.first_rate;
     const Eigen::Map<const Eigen::VectorXd> rates(velocity.data() + first, joint.q.size());
-    for (const RateLimit& one : rate_limits<dim>(joint.kind, joint.limits, joint.q, rates, dt)) {
+    for (const RateLimit& one :
+         rate_limits(joint.kind->freedom(), joint.limits, joint.q, rates, dt)) {
       const double scale = one.turns && arm > 0 ? arm : 1;
       JointLimit limit;
       limit.room = scale * one.room;
@@ -264,7 +265,7 @@ void JointConstraints<dim>::set_target(const std::string& name, double time,
   check_input(q.size() == n && rate.size() == n,
               "The target of the joint \"{}\" has {} values and {} rates; it has {} coordinates.",
               name, q.size(), rate.size(), n);
-  check_input(k < 0 || joint->kind.turn != JointTurn::any,
+  check_input(k < 0 || !joint->kind->freedom().rotation_vector,
               "The coordinates of the joint \"{}\" have one target; give it for all of them.",
               joint->name);
   if (k >= 0) {

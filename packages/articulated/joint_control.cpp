@@ -11,17 +11,17 @@ namespace {
 
 /// From a pose at q to the target: a rotation vector for a ball.
 template <int dim>
-Eigen::VectorXd way_to(const JointKind& kind, const Eigen::VectorXd& q,
+Eigen::VectorXd way_to(const JointKind<dim>& kind, const Eigen::VectorXd& q,
                        const Eigen::VectorXd& target) {
-  if (kind.turn != JointTurn::any)
+  if (!kind.freedom().rotation_vector)
     return target - q;
-  return distance_to<dim>(kind, pose_of<dim>(kind, q), target);
+  return kind.distance_to(kind.pose_of(q), target);
 }
 
 /// The rates of a joint whose coordinates are those of the target.
 template <int dim>
-Eigen::VectorXd rates_of(const JointKind& kind, const JointControl& control, double time) {
-  if (kind.turn != JointTurn::any)
+Eigen::VectorXd rates_of(const JointKind<dim>& kind, const JointControl& control, double time) {
+  if (!kind.freedom().rotation_vector)
     return control.target_at(time).rate;
   constexpr double by = 1e-5;  // s
   return way_to<dim>(kind, control.target_at(time - by).q, control.target_at(time + by).q) /
@@ -149,7 +149,7 @@ std::string coordinate_list(int k) {
   return "Coordinate " + std::to_string(k + 1);
 }
 
-void declare_control(ParameterList& list, int n) {
+void declare_control(ParameterList& list, int n, const TargetRegistry& targets) {
   declare_choice(
       list, "Control", "free", {"free", "proportional derivative", "prescribed rate", "prescribed"},
       "Control of the joint's coordinates. free: nothing; proportional derivative: a spring and a "
@@ -173,36 +173,34 @@ void declare_control(ParameterList& list, int n) {
     set_positive(list, parameter);
   for (const char* parameter : {"Damping Ratio", "Stiffness", "Damping"})
     set_at_least(list, parameter, 0);
-  declare_target(list, n);
+  declare_target(list, n, targets);
 }
 
-template <int dim>
-JointControl read_control(const ParameterList& joint, const std::string& name,
-                          const JointKind& kind,
-                          const std::function<double(const ParameterArray<double>&)>& place) {
-  const int n = n_rates<dim>(kind);
+JointControl read_control(const ParameterList& joint, const JointFreedom& freedom,
+                          const TargetSetting& setting, const TargetRegistry& targets) {
+  const int n = setting.n;
   JointControl control;
-  control.coordinates.assign(n, read_one_control(joint, name));
+  control.coordinates.assign(n, read_one_control(joint, setting.joint));
   if (control.any())
-    control.target = read_target(joint, n, place, name);
-  for (int k = 0; k < n && has_separate_coordinates<dim>(kind); ++k) {
+    control.target = read_target(joint, setting, targets);
+  for (int k = 0; k < n && freedom.has_separate_coordinates(); ++k) {
     if (!joint.isSublist(coordinate_list(k)))
       continue;
     const ParameterList& list = joint.sublist(coordinate_list(k));
-    const std::string own_name = name + "/" + coordinate_list(k);
+    const TargetSetting own{1, setting.joint + "/" + coordinate_list(k), setting.place};
     if (list.getEntry("Control").isDefault()) {
-      check_used(list, "free", own_name);
+      check_used(list, "free", own.joint);
       continue;  // limits alone leave it what the joint has
     }
-    control.coordinates[k] = read_one_control(list, own_name);
+    control.coordinates[k] = read_one_control(list, own.joint);
     if (!control.coordinates[k].free())
-      control.coordinates[k].own_target = read_target(list, 1, place, own_name);
+      control.coordinates[k].own_target = read_target(list, own, targets);
   }
   return control;
 }
 
 template <int dim>
-TargetValue given_motion(const JointKind& kind, const JointControl& control,
+TargetValue given_motion(const JointKind<dim>& kind, const JointControl& control,
                          const TargetValue& present, double time, double dt) {
   TargetValue end{control.target_at(time + dt).q, rates_of<dim>(kind, control, time + dt)};
   // The way to the target is what oscillates.
@@ -220,13 +218,13 @@ TargetValue given_motion(const JointKind& kind, const JointControl& control,
   }
   if (!oscillates)
     return end;
-  end.q = advanced<dim>(kind, end.q, way);
+  end.q = kind.advanced(end.q, way);
   end.rate += rate;
   return end;
 }
 
 template <int dim>
-ControlLaw control_law(const JointKind& kind, const JointControl& control,
+ControlLaw control_law(const JointKind<dim>& kind, const JointControl& control,
                        const TargetValue& present, const ControlTimes& times) {
   const double lead = times.lead;
   const Eigen::VectorXd way = way_to<dim>(kind, present.q, control.target_at(times.target).q);
@@ -266,17 +264,13 @@ double unresolved_part(const JointControl& control, double dt) {
   return ratio * ratio / (1 + ratio * ratio);
 }
 
-template JointControl read_control<2>(const ParameterList&, const std::string&, const JointKind&,
-                                      const std::function<double(const ParameterArray<double>&)>&);
-template JointControl read_control<3>(const ParameterList&, const std::string&, const JointKind&,
-                                      const std::function<double(const ParameterArray<double>&)>&);
-template TargetValue given_motion<2>(const JointKind&, const JointControl&, const TargetValue&,
+template TargetValue given_motion<2>(const JointKind<2>&, const JointControl&, const TargetValue&,
                                      double, double);
-template TargetValue given_motion<3>(const JointKind&, const JointControl&, const TargetValue&,
+template TargetValue given_motion<3>(const JointKind<3>&, const JointControl&, const TargetValue&,
                                      double, double);
-template ControlLaw control_law<2>(const JointKind&, const JointControl&, const TargetValue&,
+template ControlLaw control_law<2>(const JointKind<2>&, const JointControl&, const TargetValue&,
                                    const ControlTimes&);
-template ControlLaw control_law<3>(const JointKind&, const JointControl&, const TargetValue&,
+template ControlLaw control_law<3>(const JointKind<3>&, const JointControl&, const TargetValue&,
                                    const ControlTimes&);
 
 }  // namespace lockstep

@@ -48,18 +48,16 @@ struct JointControl {
 };
 
 /// Declares what acts on n coordinates alike.
-void declare_control(ParameterList& list, int n);
+void declare_control(ParameterList& list, int n, const TargetRegistry& targets);
 /// Name of the list of one coordinate's own control; k: from 0.
 std::string coordinate_list(int k);
-/// Reads the control of a validated joint; `place`: see `read_target`. Throws InputError.
-template <int dim>
-JointControl read_control(const ParameterList& joint, const std::string& name,
-                          const JointKind& kind,
-                          const std::function<double(const ParameterArray<double>&)>& place);
+/// Reads the control of a validated joint with such coordinates. Throws InputError.
+JointControl read_control(const ParameterList& joint, const JointFreedom& freedom,
+                          const TargetSetting& setting, const TargetRegistry& targets);
 
 /// Values and rates of a joint's given coordinates after dt; the entries of others have no meaning.
 template <int dim>
-TargetValue given_motion(const JointKind& kind, const JointControl& control,
+TargetValue given_motion(const JointKind<dim>& kind, const JointControl& control,
                          const TargetValue& present, double time, double dt);
 
 /// Springs and dampers over a step, by coordinate: torque = `constant` - `slope` rate.
@@ -76,7 +74,7 @@ struct ControlTimes {
 /// Linearises springs and dampers: those at the coordinates q + lead q', for the rates q' that a
 /// solve finds.
 template <int dim>
-ControlLaw control_law(const JointKind& kind, const JointControl& control,
+ControlLaw control_law(const JointKind<dim>& kind, const JointControl& control,
                        const TargetValue& present, const ControlTimes& times);
 /// The part of springs and dampers that steps of dt do not resolve [0 to 1]: about 0 while both
 /// turn their joints slowly, 1/2 where a spring has a period of one and a half steps.

@@ -1,5 +1,4 @@
 #pragma once
-#include <string>
 #include <vector>
 
 #include "base/types.hpp"
@@ -24,66 +23,71 @@ struct Screw {
   AngularVector<dim> angular = AngularVector<dim>::Zero();
 };
 
-/// Axes about which a joint turns: two_axes are the first of the first side and the second of the
-/// second side.
-enum class JointTurn { none, axis, two_axes, any };
+/// Degrees of freedom of a type of joints. Its coordinates q are displacements, then angles.
+struct JointFreedom {
+  int displacements = 0, angles = 0;
+  int axes = 0;                  ///< number of axes that a scene names: "Axis", then "Second Axis"
+  bool rotation_vector = false;  ///< the angles are one, and have no meaning one by one
 
-/// The degrees of freedom of a joint. Its coordinates q are displacements along the axes it
-/// slides on, then angles: about the axis, about the two axes one after the other, or a rotation
-/// vector.
-struct JointKind {
-  std::string name;
-  std::vector<int> slides;  ///< axes
-  JointTurn turn = JointTurn::none;
+  int n_coordinates() const { return displacements + angles; }
+  bool has_separate_coordinates() const { return n_coordinates() > 1 && !rotation_vector; }
 };
 
-/// All kinds, with one line on each.
-struct DescribedKind {
-  JointKind kind;
-  std::string documentation;
+/// Motions of the second side of a joint against the first: those that its type lets go, and those
+/// that it holds. At q = 0 both sides have one pose. Local.
+template <int dim>
+class JointKind {
+ public:
+  virtual ~JointKind() = default;
+  const JointFreedom& freedom() const { return freedom_; }
+  int n_rates() const { return freedom_.n_coordinates(); }
+
+  /// The motions that its rates stand for, one a rate.
+  virtual std::vector<Screw<dim>> free_screws(const RelativePose<dim>& pose) const = 0;
+  /// Rows that every motion it lets go makes zero, dim (dim + 1) / 2 less its rates.
+  virtual std::vector<Screw<dim>> held_rows(const RelativePose<dim>& pose) const = 0;
+  /// Distances of the sides from a place that the joint allows [m, rad]: one for each of
+  /// `held_rows`, whose values are their rates of change where they are zero.
+  virtual Eigen::VectorXd gap(const RelativePose<dim>& pose) const = 0;
+  /// q of a pose without gap. Angles are those nearest to `near`, whole turns included.
+  virtual Eigen::VectorXd coordinates(const RelativePose<dim>& pose,
+                                      const Eigen::VectorXd& near) const = 0;
+  virtual RelativePose<dim> pose_of(const Eigen::VectorXd& q) const = 0;
+
+  /// q after a motion by `change`, rates times dt.
+  virtual Eigen::VectorXd advanced(const Eigen::VectorXd& q, const Eigen::VectorXd& change) const {
+    return q + change;
+  }
+  /// Returns the change with which `advanced` takes q to `goal`; for rotation vectors with the same
+  /// number of whole turns.
+  virtual Eigen::VectorXd change_to(const Eigen::VectorXd& q, const Eigen::VectorXd& goal) const {
+    return goal - q;
+  }
+  /// Change of the coordinates that leads from a pose to q, to first order.
+  virtual Eigen::VectorXd distance_to(const RelativePose<dim>& pose,
+                                      const Eigen::VectorXd& q) const {
+    return q - coordinates(pose, q);
+  }
+
+  /// Rows that read the rates off a motion that the joint lets go.
+  std::vector<Screw<dim>> rate_rows(const RelativePose<dim>& pose) const;
+
+ protected:
+  explicit JointKind(const JointFreedom& freedom) : freedom_(freedom) {}
+  JointKind(const JointKind&) = default;
+  JointKind& operator=(const JointKind&) = default;
+
+ private:
+  JointFreedom freedom_;
 };
-template <int dim>
-std::vector<DescribedKind> joint_kinds();
 
-template <int dim>
-int n_rates(const JointKind& kind);
-/// True if a joint has several coordinates with a meaning one by one, unlike those of a rotation
-/// vector.
-template <int dim>
-bool has_separate_coordinates(const JointKind& kind);
-
-/// The motions that its rates stand for, one a rate.
-template <int dim>
-std::vector<Screw<dim>> free_screws(const JointKind& kind, const RelativePose<dim>& pose);
-/// Rows that read the rates off a motion that the joint lets go; a unit force or torque along each.
-template <int dim>
-std::vector<Screw<dim>> rate_rows(const JointKind& kind, const RelativePose<dim>& pose);
-/// Rows that every motion it lets go makes zero.
-template <int dim>
-std::vector<Screw<dim>> held_rows(const JointKind& kind, const RelativePose<dim>& pose);
-
-/// Distances of the sides from a place that the joint allows [m, rad]: one for each of `held_rows`,
-/// whose values are their rates of change where they are zero.
-template <int dim>
-Eigen::VectorXd gap(const JointKind& kind, const RelativePose<dim>& pose);
-/// q of a pose without gap. Angles are those nearest to `near`, whole turns included.
-template <int dim>
-Eigen::VectorXd coordinates(const JointKind& kind, const RelativePose<dim>& pose,
-                            const Eigen::VectorXd& near);
-template <int dim>
-RelativePose<dim> pose_of(const JointKind& kind, const Eigen::VectorXd& q);
-/// q after a motion by `change`, rates times dt.
-template <int dim>
-Eigen::VectorXd advanced(const JointKind& kind, const Eigen::VectorXd& q,
-                         const Eigen::VectorXd& change);
-/// Returns the change with which `advanced` takes q to `goal`; for ball joints with the same number
-/// of whole turns.
-template <int dim>
-Eigen::VectorXd change_to(const JointKind& kind, const Eigen::VectorXd& q,
-                          const Eigen::VectorXd& goal);
-/// Change of the coordinates that leads from a pose to q, to first order.
-template <int dim>
-Eigen::VectorXd distance_to(const JointKind& kind, const RelativePose<dim>& pose,
-                            const Eigen::VectorXd& q);
+/// The angle that differs from `angle` by whole turns and is nearest to `near` [rad].
+double nearest_angle(double angle, double near);
+/// The angle of a rotation about the first axis, from -pi to pi [rad].
+double angle_about_first(const Axes<2>& rotation);
+double angle_about_first(const Axes<3>& rotation);
+/// Distances of the first axes of both sides along the second axis and the third [rad].
+Eigen::VectorXd axis_gap(const Axes<2>& rotation);  ///< none
+Eigen::VectorXd axis_gap(const Axes<3>& rotation);
 
 }  // namespace lockstep

@@ -14,11 +14,6 @@ namespace {
 const std::string limits_list = "Limits";
 constexpr double none = std::numeric_limits<double>::infinity();
 
-template <int dim>
-bool turns_about_any(const JointKind& kind) {
-  return kind.turn == JointTurn::any && n_rotations<dim> > 1;
-}
-
 /// Returns the bounds of all coordinates, where a coordinate's own list comes before that of all;
 /// `absent` where there is none.
 Eigen::VectorXd bounds(const ParameterList& joint, const std::string& name, const std::string& side,
@@ -47,10 +42,9 @@ Eigen::VectorXd bounds(const ParameterList& joint, const std::string& name, cons
 
 }  // namespace
 
-template <int dim>
-void declare_limits(ParameterList& joint, const JointKind& kind) {
-  const int n = n_rates<dim>(kind);
-  if (turns_about_any<dim>(kind)) {
+void declare_limits(ParameterList& joint, const JointFreedom& freedom) {
+  const int n = freedom.n_coordinates();
+  if (freedom.rotation_vector) {
     ParameterList& limits = declare_list(joint, limits_list, "What stops it.");
     declare_optional<double>(limits, "Upper",
                              "How far it may turn from where it is at the start, about whatever "
@@ -74,11 +68,10 @@ void declare_limit_pair(ParameterList& list, int n) {
   }
 }
 
-template <int dim>
 JointLimits read_limits(const ParameterList& joint, const std::string& name,
-                        const JointKind& kind) {
+                        const JointFreedom& freedom) {
   JointLimits limits;
-  if (turns_about_any<dim>(kind)) {
+  if (freedom.rotation_vector) {
     const ParameterList& list = joint.sublist(limits_list);
     if (list.isParameter("Upper"))
       limits.largest_turn = list.get<double>("Upper");
@@ -86,7 +79,7 @@ JointLimits read_limits(const ParameterList& joint, const std::string& name,
                 "The joint \"{}\" may turn by 0 at most, about any axis; make it a weld.", name);
     return limits;
   }
-  const int n = n_rates<dim>(kind);
+  const int n = freedom.n_coordinates();
   if (n == 0)
     return limits;
   const Eigen::VectorXd lowest = bounds(joint, name, "Lower", n, -none);
@@ -108,8 +101,7 @@ JointLimits read_limits(const ParameterList& joint, const std::string& name,
   return limits;
 }
 
-template <int dim>
-std::vector<RateLimit> rate_limits(const JointKind& kind, const JointLimits& limits,
+std::vector<RateLimit> rate_limits(const JointFreedom& freedom, const JointLimits& limits,
                                    const Eigen::VectorXd& q, const Eigen::VectorXd& rates,
                                    double dt) {
   std::vector<RateLimit> all;
@@ -122,13 +114,12 @@ std::vector<RateLimit> rate_limits(const JointKind& kind, const JointLimits& lim
     all.push_back({-way, limits.largest_turn - way.dot(q), true});
     return all;
   }
-  const auto n_slides = static_cast<Eigen::Index>(kind.slides.size());
   for (Eigen::Index k = 0; k < limits.lower.size(); ++k) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(q.size(), k);
     if (std::isfinite(limits.lower[k]))
-      all.push_back({unit, q[k] - limits.lower[k], k >= n_slides});
+      all.push_back({unit, q[k] - limits.lower[k], k >= freedom.displacements});
     if (std::isfinite(limits.upper[k]))
-      all.push_back({-unit, limits.upper[k] - q[k], k >= n_slides});
+      all.push_back({-unit, limits.upper[k] - q[k], k >= freedom.displacements});
   }
   return all;
 }
@@ -140,16 +131,5 @@ bool at_limit(const JointLimits& limits, const Eigen::VectorXd& q, int k) {
   return limits.lower.size() > 0 &&
          (q[k] <= limits.lower[k] + close || q[k] >= limits.upper[k] - close);
 }
-
-template void declare_limits<2>(ParameterList&, const JointKind&);
-template void declare_limits<3>(ParameterList&, const JointKind&);
-template JointLimits read_limits<2>(const ParameterList&, const std::string&, const JointKind&);
-template JointLimits read_limits<3>(const ParameterList&, const std::string&, const JointKind&);
-template std::vector<RateLimit> rate_limits<2>(const JointKind&, const JointLimits&,
-                                               const Eigen::VectorXd&, const Eigen::VectorXd&,
-                                               double);
-template std::vector<RateLimit> rate_limits<3>(const JointKind&, const JointLimits&,
-                                               const Eigen::VectorXd&, const Eigen::VectorXd&,
-                                               double);
 
 }  // namespace lockstep

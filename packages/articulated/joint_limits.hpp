@@ -22,14 +22,13 @@ struct JointLimits {
   bool any() const { return lower.size() > 0 || std::isfinite(largest_turn); }
 };
 
-/// Declares the limits in the list of a joint of this kind.
-template <int dim>
-void declare_limits(ParameterList& joint, const JointKind& kind);
+/// Declares the limits in the list of a joint with such coordinates.
+void declare_limits(ParameterList& joint, const JointFreedom& freedom);
 /// Declares the limits of n coordinates alike.
 void declare_limit_pair(ParameterList& list, int n);
 /// Reads the limits of a validated joint. Throws InputError.
-template <int dim>
-JointLimits read_limits(const ParameterList& joint, const std::string& name, const JointKind& kind);
+JointLimits read_limits(const ParameterList& joint, const std::string& name,
+                        const JointFreedom& freedom);
 
 /// One limit of one motion: `weights` times rates may not be below -`room` / dt.
 struct RateLimit {
@@ -38,8 +37,7 @@ struct RateLimit {
   bool turns = false;       ///< true for an angle
 };
 /// Returns the limits at coordinates q, for a motion with about these rates over dt.
-template <int dim>
-std::vector<RateLimit> rate_limits(const JointKind& kind, const JointLimits& limits,
+std::vector<RateLimit> rate_limits(const JointFreedom& freedom, const JointLimits& limits,
                                    const Eigen::VectorXd& q, const Eigen::VectorXd& rates,
                                    double dt);
 /// True if coordinate k is at one of its limits, or beyond.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "articulated/joint_promises.hpp"
 #include "base/errors.hpp"
 #include "base/round_off.hpp"
 #include "motion/list_values.hpp"
@@ -107,22 +108,6 @@ class BodyFinder {
 };
 
 template <int dim>
-JointKind kind_of(const std::string& name) {
-  for (const DescribedKind& one : joint_kinds<dim>()) {
-    if (one.kind.name == name)
-      return one.kind;
-  }
-  return {};
-}
-
-/// True if a kind of joint names an axis. In 2D hinges turn about the one across.
-template <int dim>
-bool has_axis(const JointKind& kind) {
-  return !kind.slides.empty() ||
-         (dim == 3 && (kind.turn == JointTurn::axis || kind.turn == JointTurn::two_axes));
-}
-
-template <int dim>
 Point<dim> direction(const ParameterList& list, const std::string& parameter,
                      const std::string& name) {
   const Point<dim> axis = vector_value<dim>(list, parameter);
@@ -130,18 +115,18 @@ Point<dim> direction(const ParameterList& list, const std::string& parameter,
   return axis.normalized();
 }
 
-/// The joint's axes in space: those that are named first.
-Axes<2> axes_of(const Point<2>& axis, const ParameterList&, const std::string&, const JointKind&) {
+/// The joint's axes in space: those that are named first, `n_named`.
+Axes<2> axes_of(const Point<2>& axis, const ParameterList&, const std::string&, int) {
   Axes<2> axes;
   axes << axis, Point<2>(-axis.y(), axis.x());
   return axes;
 }
 Axes<3> axes_of(const Point<3>& axis, const ParameterList& list, const std::string& name,
-                const JointKind& kind) {
+                int n_named) {
   Axes<3> axes;
   axes.col(0) = axis;
   axes.col(1) = axis.unitOrthogonal();
-  if (kind.turn == JointTurn::two_axes) {
+  if (n_named == 2) {
     axes.col(1) = direction<3>(list, "Second Axis", name);
     check_input(std::abs(axis.dot(axes.col(1))) <= rounding::differences,
                 "The \"Second Axis\" of the joint \"{}\" must be at right angles to its \"Axis\".",
@@ -149,42 +134,6 @@ Axes<3> axes_of(const Point<3>& axis, const ParameterList& list, const std::stri
   }
   axes.col(2) = Point<3>(axes.col(0)).cross(Point<3>(axes.col(1)));
   return axes;
-}
-
-template <int dim>
-ParameterList parameters_of(const JointKind& kind) {
-  ParameterList list(kind.name);
-  declare_required_vector<std::string>(
-      list, "Solids", 2,
-      "The two solids that the joint connects: rigid bodies, dynamic or prescribed, or \"space\". "
-      "The joint's axes go with the first.");
-  declare_required_vector<double>(list, "Point", dim,
-                                  "Place of the joint at the start, in space [m].");
-  if (has_axis<dim>(kind))
-    declare_required_vector<double>(list, "Axis", dim,
-                                    "Axis of the joint at the start, in space, of any length [1].");
-  if (kind.turn == JointTurn::two_axes)
-    declare_required_vector<double>(
-        list, "Second Axis", dim,
-        "Second axis at the start, at right angles to \"Axis\", of any length [1].");
-  if (n_rates<dim>(kind) > 0) {
-    declare_control(list, n_rates<dim>(kind));
-    declare_limits<dim>(list, kind);
-  }
-  for (int k = 0; k < n_rates<dim>(kind) && has_separate_coordinates<dim>(kind); ++k) {
-    const bool slides = k < static_cast<int>(kind.slides.size());
-    ParameterList& own = declare_optional_list(
-        list, coordinate_list(k),
-        fmt::format(
-            "Settings of this {} alone. With a \"Control\" here nothing of the joint's own control "
-            "acts on "
-            "it; a limit here takes the place of the joint's for it. The joint's own settings "
-            "hold where this list is silent.",
-            slides ? "displacement" : "angle"));
-    declare_control(own, 1);
-    declare_limit_pair(own, 1);
-  }
-  return list;
 }
 
 /// No limit stops a coordinate that is given.
@@ -202,18 +151,24 @@ void check_limits(const Joint<dim>& joint) {
 }
 
 template <int dim>
-Joint<dim> read_joint(const std::string& name, const ParameterList& list, BodyFinder<dim>& finder) {
+Joint<dim> read_joint(const std::string& name, const ParameterList& list, BodyFinder<dim>& finder,
+                      const JointTypes<dim>& types) {
   Joint<dim> joint;
   joint.name = name;
-  joint.kind = kind_of<dim>(list.get<std::string>("Type"));
+  joint.type = list.get<std::string>("Type");
+  joint.kind = types.joints->create(joint.type, list);
+  const std::string broken =
+      broken_promise(*joint.kind, Eigen::VectorXd::Zero(joint.kind->n_rates()));
+  check_input(broken.empty(), "The joint type \"{}\" {}: its plug-in must be mended.", joint.type,
+              broken);
+  const JointFreedom& freedom = joint.kind->freedom();
   const auto& solids = list.get<ParameterArray<std::string>>("Solids");
   check_input(solids[0] != solids[1], "The joint \"{}\" connects \"{}\" with itself; name two.",
               name, solids[0]);
   const Point<dim> point = vector_value<dim>(list, "Point");
-  const Point<dim> axis = has_axis<dim>(joint.kind) ? direction<dim>(list, "Axis", name)
-                                                    : Point<dim>(Point<dim>::Unit(0));
-  const Axes<dim> axes = has_axis<dim>(joint.kind) ? axes_of(axis, list, name, joint.kind)
-                                                   : Axes<dim>(Axes<dim>::Identity());
+  Axes<dim> axes = Axes<dim>::Identity();
+  if (freedom.axes > 0)
+    axes = axes_of(direction<dim>(list, "Axis", name), list, name, freedom.axes);
   bool movable = false;
   for (int side = 0; side < 2; ++side) {
     const int body = finder.find(name, solids[side]);
@@ -227,19 +182,10 @@ Joint<dim> read_joint(const std::string& name, const ParameterList& list, BodyFi
     joint.sides[side] = {body, pose.rotation.transpose() * (point - pose.position),
                          pose.rotation.transpose() * axes};
   }
-  const auto place = [&](const ParameterArray<double>& way) {
-    check_input(way.size() == dim,
-                "The \"Direction\" of the wave of the joint \"{}\" has {} numbers; "
-                "give {}.",
-                name, way.size(), dim);
-    const Point<dim> along = Eigen::Map<const Point<dim>>(way.getRawPtr());
-    check_input(along.norm() > 0,
-                "The \"Direction\" of the wave of the joint \"{}\" must not be zero.", name);
-    return point.dot(along.normalized());
-  };
-  if (n_rates<dim>(joint.kind) > 0)
-    joint.control = read_control<dim>(list, name, joint.kind, place);
-  joint.limits = read_limits<dim>(list, name, joint.kind);
+  if (joint.kind->n_rates() > 0)
+    joint.control =
+        read_control(list, freedom, {joint.kind->n_rates(), name, point}, *types.targets);
+  joint.limits = read_limits(list, name, freedom);
   check_limits(joint);
   check_input(movable, "The joint \"{}\" connects two prescribed solids; nothing can move it.",
               name);
@@ -249,11 +195,39 @@ Joint<dim> read_joint(const std::string& name, const ParameterList& list, BodyFi
 }  // namespace
 
 template <int dim>
-std::vector<TypedSchema> joint_schemas() {
-  std::vector<TypedSchema> schemas;
-  for (const DescribedKind& one : joint_kinds<dim>())
-    schemas.push_back({one.kind.name, one.documentation, parameters_of<dim>(one.kind)});
-  return schemas;
+ParameterList joint_parameters(const JointFreedom& freedom, const TargetRegistry& targets) {
+  const int n = freedom.n_coordinates();
+  ParameterList list;
+  declare_required_vector<std::string>(
+      list, "Solids", 2,
+      "The two solids that the joint connects: rigid bodies, dynamic or prescribed, or \"space\". "
+      "The joint's axes go with the first.");
+  declare_required_vector<double>(list, "Point", dim,
+                                  "Place of the joint at the start, in space [m].");
+  if (freedom.axes > 0)
+    declare_required_vector<double>(list, "Axis", dim,
+                                    "Axis of the joint at the start, in space, of any length [1].");
+  if (freedom.axes > 1)
+    declare_required_vector<double>(
+        list, "Second Axis", dim,
+        "Second axis at the start, at right angles to \"Axis\", of any length [1].");
+  if (n > 0) {
+    declare_control(list, n, targets);
+    declare_limits(list, freedom);
+  }
+  for (int k = 0; k < n && freedom.has_separate_coordinates(); ++k) {
+    ParameterList& own = declare_optional_list(
+        list, coordinate_list(k),
+        fmt::format(
+            "Settings of this {} alone. With a \"Control\" here nothing of the joint's own control "
+            "acts on "
+            "it; a limit here takes the place of the joint's for it. The joint's own settings "
+            "hold where this list is silent.",
+            k < freedom.displacements ? "displacement" : "angle"));
+    declare_control(own, 1, targets);
+    declare_limit_pair(own, 1);
+  }
+  return list;
 }
 
 ParameterList articulation_parameters() {
@@ -273,7 +247,8 @@ ParameterList articulation_parameters() {
 template <int dim>
 std::shared_ptr<Articulation<dim>> read_joints(const ParameterList& shared,
                                                const NamedLists& joints,
-                                               const JointSetting<dim>& setting) {
+                                               const JointSetting<dim>& setting,
+                                               const JointTypes<dim>& types) {
   ArticulationOptions options;
   options.two_halves = shared.get<std::string>("Impulses") == "two halves";
   options.fully_implicit = shared.get<std::string>("Time Integration") == "fully-implicit";
@@ -281,7 +256,7 @@ std::shared_ptr<Articulation<dim>> read_joints(const ParameterList& shared,
   BodyFinder<dim> finder(setting);
   std::vector<Joint<dim>> all;
   for (const auto& [name, list] : joints)
-    all.push_back(read_joint<dim>(name, list, finder));
+    all.push_back(read_joint<dim>(name, list, finder, types));
   finder.find_carriers();
   GlobalIndex n_dofs = 0;
   for (const auto& model : setting.models)
@@ -289,11 +264,11 @@ std::shared_ptr<Articulation<dim>> read_joints(const ParameterList& shared,
   return std::make_shared<Articulation<dim>>(finder.bodies(), std::move(all), options, n_dofs);
 }
 
-template std::vector<TypedSchema> joint_schemas<2>();
-template std::vector<TypedSchema> joint_schemas<3>();
+template ParameterList joint_parameters<2>(const JointFreedom&, const TargetRegistry&);
+template ParameterList joint_parameters<3>(const JointFreedom&, const TargetRegistry&);
 template std::shared_ptr<Articulation<2>> read_joints(const ParameterList&, const NamedLists&,
-                                                      const JointSetting<2>&);
+                                                      const JointSetting<2>&, const JointTypes<2>&);
 template std::shared_ptr<Articulation<3>> read_joints(const ParameterList&, const NamedLists&,
-                                                      const JointSetting<3>&);
+                                                      const JointSetting<3>&, const JointTypes<3>&);
 
 }  // namespace lockstep

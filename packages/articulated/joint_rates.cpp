@@ -30,7 +30,7 @@ template <int dim>
 std::string joined_names(const Articulation<dim>& articulation) {
   std::string names;
   for (const Joint<dim>& joint : articulation.joints())
-    names += joint.name + " " + joint.kind.name + "\n";
+    names += joint.name + " " + joint.type + "\n";
   return names;
 }
 
@@ -93,8 +93,7 @@ std::vector<double> JointRates<dim>::locked_velocities(double begin, double end)
       continue;
     Eigen::VectorXd rates = joint.goal.rate;
     if (end > begin)
-      rates =
-          distance_to(joint.kind, pose_of<dim>(joint.kind, joint.q), joint.goal.q) / (end - begin);
+      rates = joint.kind->distance_to(joint.kind->pose_of(joint.q), joint.goal.q) / (end - begin);
     for (int k = 0; k < rates.size(); ++k) {
       if (joint.control.given(k))
         values.push_back(rates[k]);

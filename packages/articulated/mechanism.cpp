@@ -80,7 +80,7 @@ class TreeMotion {
     for (const int j : mechanism.joints) {
       if (joints[j].first_rate >= 0)
         rate_columns_[j] =
-            add_columns(dofs.first_rate + joints[j].first_rate, n_rates<dim>(joints[j].kind));
+            add_columns(dofs.first_rate + joints[j].first_rate, joints[j].kind->n_rates());
     }
     for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
       basis_.twists.push_back(twists_of_next(mechanism.bodies[b], mechanism.carriers[b]));
@@ -118,7 +118,7 @@ class TreeMotion {
     const JointPlace<dim> place = place_of(joint, poses_);
     Twists<dim> twists =
         carried_to<dim>(this->twists(parent), place.point - pose_of(poses_, parent).position);
-    const std::vector<Screw<dim>> free = free_screws(joint.kind, place.pose);
+    const std::vector<Screw<dim>> free = joint.kind->free_screws(place.pose);
     for (std::size_t k = 0; k < free.size(); ++k) {
       TwistVector<dim> motion;
       motion << place.axes * free[k].linear, turned_axes(place.axes, free[k].angular);
@@ -147,7 +147,7 @@ Eigen::MatrixXd loop_rows(const Mechanism& mechanism, const std::vector<Joint<di
   size = 0;
   for (const int j : mechanism.loops) {
     const JointPlace<dim> place = place_of(joints[j], poses);
-    for (const Screw<dim>& held : held_rows(joints[j].kind, place.pose)) {
+    for (const Screw<dim>& held : joints[j].kind->held_rows(place.pose)) {
       const double scale = held.linear.isZero(0) ? 1 : 1 / unit;
       Eigen::RowVectorXd row;
       for (int side = 0; side < 2; ++side) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,8 @@ struct JointSide {
 template <int dim>
 struct Joint {
   std::string name;
-  JointKind kind;
+  std::string type;  ///< name of the kind in scenes
+  std::shared_ptr<const JointKind<dim>> kind;
   std::array<JointSide<dim>, 2> sides;
   JointControl control;
   JointLimits limits;

@@ -1,10 +1,11 @@
 #pragma once
+#include "articulated/joint_registry.hpp"
 #include "interfaces/registries.hpp"
 
 namespace lockstep {
 
-/// Adds the joints between rigid bodies.
+/// Adds joints between rigid bodies, of these types.
 template <int dim>
-void register_articulated(Registries<dim>& registries);
+void register_articulated(Registries<dim>& registries, const JointTypes<dim>& types);
 
 }  // namespace lockstep

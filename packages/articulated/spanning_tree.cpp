@@ -145,7 +145,7 @@ std::vector<Mechanism> find_mechanisms(const std::vector<JointedBody<dim>>& bodi
     if (!in_tree[j])
       continue;
     joints[j].first_rate = n_all;
-    n_all += n_rates<dim>(joints[j].kind);
+    n_all += joints[j].kind->n_rates();
   }
   // Loops may tie two trees of the ground together: they are one mechanism then.
   const int n = static_cast<int>(mechanisms.size());

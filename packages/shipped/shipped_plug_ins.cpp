@@ -30,7 +30,11 @@ Registries<dim> shipped() {
   register_lines<dim>(registries.solids);
   register_mixed_face<dim>(registries.couplings);
   register_flux<dim>(registries.couplings);
-  register_articulated<dim>(registries);
+  const auto joints = registries.template add_part<JointRegistry<dim>>("joint");
+  register_joints<dim>(*joints);
+  const auto targets = registries.template add_part<TargetRegistry>("target");
+  register_targets(*targets);
+  register_articulated<dim>(registries, {joints, targets});
   register_contact<dim>(registries.contacts);
   register_strategies(registries.strategies);
   register_observers<dim>(registries.observers);

@@ -95,7 +95,7 @@ struct Registries {
   /// Schema of the "Domain" list, by the name of the fluid whose domain it is.
   std::map<std::string, std::function<ParameterList()>> domains;
   /// Registries of what plug-ins are put together from, of types that their packages define:
-  /// materials of soft bodies, interface models of a liquid. Copies of this object share them.
+  /// materials, interface models of a liquid, joints, targets. Copies of this object share them.
   std::vector<std::shared_ptr<NamedPlugIns>> parts;
 
   /// Adds an empty registry of parts.

@@ -33,13 +33,13 @@ class NamedPlugIns {
 };
 
 /// The plug-ins of one kind, chosen by name. Filled by explicit calls of `add` from the program
-/// that wants them; nothing registers itself. Arguments after the parameters are passed to every
-/// factory.
-template <typename Base, typename... Args>
-class Registry : public NamedPlugIns {
+/// that wants them; nothing registers itself. `Schema` and `Make` are the signatures of the
+/// functions that give a plug-in's valid list, and that make it from a list and further arguments.
+template <typename Schema, typename Make>
+class RegistryOf : public NamedPlugIns {
  public:
-  using ValidParameters = std::function<ParameterList()>;
-  using Factory = std::function<std::unique_ptr<Base>(const ParameterList&, Args...)>;
+  using ValidParameters = std::function<Schema>;
+  using Factory = std::function<Make>;
   struct Plugin {
     std::string name;
     std::string documentation;
@@ -47,7 +47,7 @@ class Registry : public NamedPlugIns {
     Factory factory;
   };
 
-  explicit Registry(std::string kind) : kind_(std::move(kind)) {}
+  explicit RegistryOf(std::string kind) : kind_(std::move(kind)) {}
 
   /// Throws InputError if the name is taken.
   void add(const std::string& name, const std::string& documentation,
@@ -58,22 +58,23 @@ class Registry : public NamedPlugIns {
   }
 
   /// Builds the plug-in from its (validated) list. Throws InputError for an unknown name.
-  std::unique_ptr<Base> create(const std::string& name, const ParameterList& list,
-                               Args... args) const {
+  template <typename... Args>
+  auto create(const std::string& name, const ParameterList& list, Args&&... args) const {
     return get(name).factory(list, std::forward<Args>(args)...);
   }
 
   /// The valid list of one plug-in. Throws InputError for an unknown name.
-  ParameterList valid_parameters(const std::string& name) const {
-    return get(name).valid_parameters();
+  template <typename... Args>
+  ParameterList valid_parameters(const std::string& name, const Args&... args) const {
+    return get(name).valid_parameters(args...);
   }
 
   /// For declare_typed_sublist and declare_named_sublists, whose "Type" is then the plug-in's name.
-  std::vector<TypedSchema> schemas() const {
+  template <typename... Args>
+  std::vector<TypedSchema> schemas(const Args&... args) const {
     std::vector<TypedSchema> result;
-    for (const Plugin& plugin : plugins_) {
-      result.push_back({plugin.name, plugin.documentation, plugin.valid_parameters(), true});
-    }
+    for (const Plugin& plugin : plugins_)
+      result.push_back({plugin.name, plugin.documentation, plugin.valid_parameters(args...), true});
     return result;
   }
 
@@ -121,5 +122,10 @@ class Registry : public NamedPlugIns {
   std::string kind_;
   std::vector<Plugin> plugins_;
 };
+
+/// A registry of objects whose valid lists depend on nothing. `Args` after the parameters are
+/// passed to every factory.
+template <typename Base, typename... Args>
+using Registry = RegistryOf<ParameterList(), std::unique_ptr<Base>(const ParameterList&, Args...)>;
 
 }  // namespace lockstep

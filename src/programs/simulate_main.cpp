@@ -12,7 +12,6 @@
 #include "base/signals.hpp"
 #include "output/provenance/build_information.hpp"
 #include "parameters/command_line.hpp"
-#include "parameters/parameter_rule.hpp"
 #include "parameters/reference.hpp"
 #include "parameters/schema/json_schema.hpp"
 #include "parameters/schema/relax_ng.hpp"
@@ -100,20 +99,6 @@ void print_plug_in(const std::string& kind, const std::string& name,
   std::cout << kind << ": " << name << "\n    " << documentation << "\n";
 }
 
-/// Kinds of joints and of their targets, which belong to the articulation.
-void print_joints(const Registries<3>& registries) {
-  std::vector<TypedSchema> targets;
-  for (const auto& [articulation, schemas] : registries.joints) {
-    for (const TypedSchema& joint : schemas()) {
-      print_plug_in("joint", joint.type, joint.documentation);
-      if (targets.empty() && joint.parameters.isSublist("Target"))
-        targets = list_rule(joint.parameters.getEntry("Target")).schemas;
-    }
-  }
-  for (const TypedSchema& target : targets)
-    print_plug_in("target", target.type, target.documentation);
-}
-
 /// All plug-ins of scenes in space; those that are in the plane alone are marked.
 void print_plug_ins(const PlugIns& plug_ins) {
   const auto in_space = plug_ins.space.all(), in_plane = plug_ins.plane.all();
@@ -130,7 +115,6 @@ void print_plug_ins(const PlugIns& plug_ins) {
     }
     kinds.push_back(in_space[k]->kind());
   }
-  print_joints(plug_ins.space);
   std::cout << fmt::format("A library of plug-ins may add to each kind of: {}.\n",
                            fmt::join(kinds, ", "));
 }

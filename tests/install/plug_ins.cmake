@@ -69,8 +69,8 @@ if(NOT soft_height LESS 0.588 OR NOT stiff_height GREATER 0.5956)
   message(FATAL_ERROR "The strip hangs at ${soft_height} m, with fibres at ${stiff_height} m.")
 endif()
 
-# A coupling that derives from one that ships, and a contact model, each a project of four lines.
-foreach(project coupling contact)
+# A coupling that derives from one that ships, a contact model, and a joint with a target, each a project of four lines.
+foreach(project coupling contact joint)
   set(folder "${copy}/${project}")
   run_step("Configuring the ${project}" ${CMAKE_COMMAND} -S "${folder}" -B "${folder}/build" -G "${GENERATOR}"
            "-DCMAKE_PREFIX_PATH=${prefix}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
@@ -89,6 +89,32 @@ if(NOT height GREATER 0.2995 OR NOT height LESS 0.3005 OR NOT push GREATER 307 O
   message(FATAL_ERROR "The disc lies at ${height} m, and the floor pushes it by ${push} N/m.")
 endif()
 
+
+# A nut on a screw, an arm that a target leads, in one go on two ranks and in halves.
+set(screw "${copy}/joint/lead-screw.yaml")
+foreach(ranks 1 2)
+  run_step("The joint on ${ranks} ranks" ${MPIEXEC} -np ${ranks} "${simulate}" "${screw}" --output "${copy}/screw-${ranks}")
+  last_value("${copy}/screw-${ranks}/bodies.csv" "z" height)
+  last_value("${copy}/screw-${ranks}/joints.csv" "q" angle)
+  # z = 0.7 - a t^2/2, a = g / (1 + I/(m p^2)), I/m = 0.2^2/6, p = 0.1/(2 pi); the arm has turned by pi/2.
+  if(NOT height MATCHES "^0\\.5204542" OR NOT angle MATCHES "^1\\.5707963")
+    message(FATAL_ERROR "The nut is at ${height} m, the arm at ${angle} rad on ${ranks} ranks.")
+  endif()
+endforeach()
+run_step("Half of the joint's scene" "${simulate}" "${screw}" --output "${copy}/screw-halves" --set "Time/Steps=50")
+run_step("The other half" "${simulate}" "${screw}" --output "${copy}/screw-halves"
+         --restart "${copy}/screw-halves/checkpoint-000050.h5")
+foreach(table bodies joints)
+  expect_same("${copy}/screw-1/${table}.csv" "${copy}/screw-halves/${table}.csv")
+endforeach()
+run_step("The list of joints" "${simulate}" --plug-in "${copy}/joint/build/libscrew.so" --list-plugins)
+foreach(line "joint: screw" "joint: hinge" "target: smooth step" "may add to each kind of: .*joint, target")
+  expect("${line}")
+endforeach()
+refuse_step(2 "is \"scrw\".*did you mean \"screw\"" "${simulate}" "${screw}" --set "Joints/Screw/Type=scrw")
+refuse_step(2 "\"Led\".*Did you mean \"Lead\"" "${simulate}" "${screw}" --set "Joints/Screw/Led=0.1")
+refuse_step(2 "is \"smooth stop\".*did you mean \"smooth step\"" "${simulate}" "${screw}" --set "Joints/Shoulder/Target/Type=smooth stop")
+
 if(HAS_MODULE)
   run_step("Python" ${CMAKE_COMMAND} -E env "PYTHONPATH=${prefix}/lib/python3/dist-packages" "${PYTHON}"
            "${CMAKE_CURRENT_LIST_DIR}/one_step.py" "${piston}" "${copy}/stepped" "${library}")
@@ -96,6 +122,9 @@ if(HAS_MODULE)
   run_step("Python, of a scene that names a library" ${CMAKE_COMMAND} -E env
            "PYTHONPATH=${prefix}/lib/python3/dist-packages" "${PYTHON}"
            "${CMAKE_CURRENT_LIST_DIR}/one_step.py" "${material}/fibres.xml" "${copy}/stepped-fibres")
+  expect("1 step")
+  run_step("Python, with the joint" ${CMAKE_COMMAND} -E env "PYTHONPATH=${prefix}/lib/python3/dist-packages" "${PYTHON}"
+           "${CMAKE_CURRENT_LIST_DIR}/one_step.py" "${screw}" "${copy}/stepped-screw")
   expect("1 step")
 endif()
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "joint_types.hpp"
 #include "motion/rotation.hpp"
 
 namespace lockstep::test {
@@ -14,7 +15,7 @@ class Chain {
   Chain() {
     const std::array<Point<3>, 3> spins{Point<3>(0.5, 0.7, 1), Point<3>(0, -0.6, -1),
                                         Point<3>(0.3, 0.4, 1.5)};
-    const JointKind ball{"ball", {}, JointTurn::any};
+    const auto ball = joint_kind<3>("ball");
     for (int b = 0; b < 3; ++b) {
       JointedBody<3> body;
       body.first_dof = 6 * b;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "articulated/joint_control.hpp"
+#include "joint_types.hpp"
 
 namespace lockstep::test {
 namespace {
@@ -39,12 +40,8 @@ TEST(JointControl, NoStepResolvesAJointWithoutInertia) {
 /// of 0, with half of the damper at the present rate 4.
 TEST(JointControl, LawOfASpringAndADamper) {
   JointControl control = sprung(2, 3, 1);
-  JointKind kind;
-  for (const DescribedKind& one : joint_kinds<2>())
-    if (one.kind.name == "hinge")
-      kind = one.kind;
   const TargetValue present{Eigen::VectorXd::Constant(1, 1.), Eigen::VectorXd::Constant(1, 4.)};
-  const ControlLaw law = control_law<2>(kind, control, present, {0, 0.1, 0.5});
+  const ControlLaw law = control_law<2>(*joint_kind<2>("hinge"), control, present, {0, 0.1, 0.5});
   EXPECT_DOUBLE_EQ(law.constant[0] - law.slope[0] * 5, -2 * (1 + 0.1 * 5) - 3 * (4 + 5) / 2.);
 }
 

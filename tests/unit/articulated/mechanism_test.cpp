@@ -6,6 +6,7 @@
 #include "articulated/closing.hpp"
 #include "articulated/lone_mechanism.hpp"
 #include "articulated/mechanism.hpp"
+#include "joint_types.hpp"
 #include "motion/rotation.hpp"
 
 namespace lockstep::test {
@@ -25,10 +26,10 @@ struct Linkage {
     poses.push_back({position, rotation_of<dim>(turn).toRotationMatrix()});
     return static_cast<int>(bodies.size()) - 1;
   }
-  void add_joint(const JointKind& kind, int first, int second, const Point<dim>& point) {
+  void add_joint(const std::string& type, int first, int second, const Point<dim>& point) {
     Joint<dim> joint;
-    joint.kind = kind;
-    joint.q = Eigen::VectorXd::Zero(n_rates<dim>(kind));
+    joint.kind = joint_kind<dim>(type);
+    joint.q = Eigen::VectorXd::Zero(joint.kind->n_rates());
     int side = 0;
     for (const int body : {first, second}) {
       const BodyPose<dim> pose = pose_of(poses, body);
@@ -48,7 +49,7 @@ struct Linkage {
   int n_all_rates() const {
     int n = 0;
     for (const Joint<dim>& joint : joints)
-      n += joint.first_rate >= 0 ? n_rates<dim>(joint.kind) : 0;
+      n += joint.first_rate >= 0 ? joint.kind->n_rates() : 0;
     return n;
   }
 };
@@ -75,7 +76,7 @@ double largest_violation(const Linkage<dim>& linkage, const Mechanism& mechanism
   double largest = 0;
   for (const Joint<dim>& joint : linkage.joints) {
     const JointPlace<dim> place = place_of(joint, linkage.poses);
-    for (const Screw<dim>& held : held_rows(joint.kind, place.pose)) {
+    for (const Screw<dim>& held : joint.kind->held_rows(place.pose)) {
       Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(basis.columns.size());
       for (int side = 0; side < 2; ++side) {
         const int body = joint.sides[side].body;
@@ -94,14 +95,6 @@ MotionBasis<dim> basis_of(const Linkage<dim>& linkage, const Mechanism& mechanis
                       std::vector<char>(linkage.n_all_rates(), 0));
 }
 
-JointKind kind(const std::string& name) {
-  for (const DescribedKind& one : joint_kinds<3>()) {
-    if (one.kind.name == name)
-      return one.kind;
-  }
-  return {};
-}
-
 /// Four links about a parallelogram.
 Linkage<2> four_bars() {
   Linkage<2> linkage;
@@ -109,7 +102,7 @@ Linkage<2> four_bars() {
   for (int k = 0; k < 4; ++k)
     linkage.add_body(0.5 * (corners[k] + corners[(k + 1) % 4]), AngularVector<2>(0.3 * k));
   for (int k = 0; k < 4; ++k)
-    linkage.add_joint(kind("hinge"), k, (k + 1) % 4, corners[(k + 1) % 4]);
+    linkage.add_joint("hinge", k, (k + 1) % 4, corners[(k + 1) % 4]);
   return linkage;
 }
 
@@ -121,9 +114,9 @@ TEST(Mechanism, TreesMoveAsAllTheirJointsLet) {
   linkage.add_body({1, 0.2, 0}, {-0.4, 0.2, 0});
   linkage.add_body({2, -0.3, 0.5}, {0, 0, 1});
   linkage.add_body({1, 1, 1}, {0.5, 0.5, 0});
-  linkage.add_joint(kind("ball"), 1, 0, {0.5, 0, 0});
-  linkage.add_joint(kind("universal"), 1, 2, {1.5, 0, 0.2});
-  linkage.add_joint(kind("cylinder"), 3, 1, {1, 0.5, 0.5});
+  linkage.add_joint("ball", 1, 0, {0.5, 0, 0});
+  linkage.add_joint("universal", 1, 2, {1.5, 0, 0.2});
+  linkage.add_joint("cylinder", 3, 1, {1, 0.5, 0.5});
   const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
   ASSERT_EQ(mechanisms.size(), 1u);
   EXPECT_EQ(mechanisms[0].root, 0);
@@ -149,8 +142,8 @@ TEST(Mechanism, ASecondHingeOfADoorSaysNothingNew) {
     Linkage<3> linkage;
     linkage.add_body({0.3, -0.2, 0.1}, {turn, 0.2, 0.3});
     linkage.add_body({0.1, 0.7, -0.3}, {-0.4, turn, 0.1});
-    linkage.add_joint(kind("hinge"), 0, 1, {0, 0, 0});
-    linkage.add_joint(kind("hinge"), 0, 1, {1. / 3, 0, 0});
+    linkage.add_joint("hinge", 0, 1, {0, 0, 0});
+    linkage.add_joint("hinge", 0, 1, {1. / 3, 0, 0});
     const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
     ASSERT_EQ(mechanisms[0].loops.size(), 1u);
     const MotionBasis<3> basis = basis_of(linkage, mechanisms[0]);
@@ -189,9 +182,9 @@ TEST(Mechanism, GroundsAreRootsAndTheirMotionIsHandedOn) {
   const int cart = linkage.add_body({0, 0}, AngularVector<2>(0), false);
   const int bob = linkage.add_body({0, -1}, AngularVector<2>(0.3));
   const int tail = linkage.add_body({0, -2}, AngularVector<2>(0.1));
-  linkage.add_joint(kind("hinge"), bob, cart, {0, -0.2});
-  linkage.add_joint(kind("slider"), bob, tail, {0, -1.5});
-  linkage.add_joint(kind("hinge"), space, tail, {0.5, -2.5});
+  linkage.add_joint("hinge", bob, cart, {0, -0.2});
+  linkage.add_joint("slider", bob, tail, {0, -1.5});
+  linkage.add_joint("hinge", space, tail, {0.5, -2.5});
   const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
   ASSERT_EQ(mechanisms.size(), 1u);
   EXPECT_EQ(mechanisms[0].root, space);
@@ -245,8 +238,8 @@ TEST(Closing, AMechanismAloneIsTheSameBitForBit) {
   }
   for (int k = 0; k < 4; ++k) {
     if (k > 0)
-      linkage.add_joint(kind("hinge"), 2 * k - 2, 2 * k, {2.5 + k, 0});
-    linkage.add_joint(kind("hinge"), 2 * k + 1, 2 * ((k + 1) % 4) + 1, corners[(k + 1) % 4]);
+      linkage.add_joint("hinge", 2 * k - 2, 2 * k, {2.5 + k, 0});
+    linkage.add_joint("hinge", 2 * k + 1, 2 * ((k + 1) % 4) + 1, corners[(k + 1) % 4]);
   }
   const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
   ASSERT_EQ(mechanisms.size(), 2u);
@@ -279,8 +272,8 @@ TEST(Closing, RatesTakeTreesToTheirCoordinates) {
   linkage.add_body({0, 0, 0}, {0.1, 0.2, 0.3});
   linkage.add_body({1, 0.2, 0}, {-0.4, 0.2, 0});
   linkage.add_body({2, -0.3, 0.5}, {0, 0, 1});
-  linkage.add_joint(kind("ball"), 1, 0, {0.5, 0, 0});
-  linkage.add_joint(kind("cylinder"), 1, 2, {1.5, 0, 0.2});
+  linkage.add_joint("ball", 1, 0, {0.5, 0, 0});
+  linkage.add_joint("cylinder", 1, 2, {1.5, 0, 0.2});
   const auto mechanisms = find_mechanisms(linkage.bodies, linkage.joints);
   const std::vector<BodyMass<3>> masses(3);
   const ClosingProblem<3> problem{mechanisms[0], linkage.joints, linkage.poses,
@@ -295,7 +288,7 @@ TEST(Closing, RatesTakeTreesToTheirCoordinates) {
   for (const Joint<3>& joint : linkage.joints) {
     EXPECT_LT(largest_gap(joint, after), 1e-13);
     const Eigen::VectorXd q = change.segment(first, joint.q.size());
-    EXPECT_LT(distance_to(joint.kind, place_of(joint, after).pose, q).norm(), 1e-13);
+    EXPECT_LT(joint.kind->distance_to(place_of(joint, after).pose, q).norm(), 1e-13);
     first += static_cast<int>(joint.q.size());
   }
 }
