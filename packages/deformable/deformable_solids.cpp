@@ -111,6 +111,7 @@ void DeformableSolids<dim>::explicit_momentum(double, double dt, Vector& momentu
 
 template <int dim>
 void DeformableSolids<dim>::begin_step(double time, double dt) {
+  step_ = dt;
   explicit_.begin_step(dt, nodes_.held.begin_step(time));
   implicit_.soften(dt);
 }
@@ -141,7 +142,13 @@ template <int dim>
 void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   nodes_.velocity = rcp(new Vector(velocity, Teuchos::Copy));
   limiting_impulse_.clear();
-  implicit_.end_step();
+  // The first of two kicks ends nothing, nor does what moves bodies outside of steps.
+  const bool ends = implicit_.has_moved() && step_ > 0 && forces_.end_step(nodes_.x, step_);
+  implicit_.end_step(ends);
+  if (ends) {
+    step_ = 0;
+    explicit_.update_largest_stable_step();
+  }
   states_ = body_states(nodes_, surface_, forces_.energy);
 }
 

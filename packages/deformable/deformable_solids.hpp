@@ -101,6 +101,7 @@ class DeformableSolids : public SolidModel<dim>,
   ElementForces<dim> forces_;
   ImplicitForces<dim> implicit_;
   ExplicitElasticity<dim> explicit_;
+  double step_ = 0;  ///< length of the step that laws with a memory have not ended yet [s]
   std::vector<SolidState<dim>> states_;
   VolumeSweep<dim> sweep_;
   StrainLimit<dim> strain_limit_;

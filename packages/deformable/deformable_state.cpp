@@ -1,5 +1,7 @@
 // Checkpoints of the deformable bodies.
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include "base/errors.hpp"
 #include "deformable/deformable_solids.hpp"
@@ -33,6 +35,45 @@ std::vector<Point<dim>> points_of(const std::vector<double>& values) {
   return points;
 }
 
+/// Name in a checkpoint of the states of a body's elements.
+std::string states_path(const std::string& type, int body) {
+  return fmt::format("{}/element states {}", type, body);
+}
+
+/// Writes states of elements that laws keep, each by the rank that owns its first corner.
+template <int dim>
+void save_states(const ElementForces<dim>& forces, const std::string& type,
+                 CheckpointWriter& writer) {
+  for (const auto& one : forces.remembering) {
+    const int n = one.group->n_state();
+    const ElementCorners corners = one.group->corners();
+    const std::vector<double>& states = *one.group->states();
+    std::vector<GlobalIndex> ids;
+    std::vector<double> values;
+    for (std::size_t e = 0; e < one.numbers.size(); ++e) {
+      if (corners.nodes[e * corners.n_corners] >= forces.nodes.n_owned())
+        continue;
+      ids.push_back(one.numbers[e]);
+      values.insert(values.end(), &states[e * n], &states[e * n] + n);
+    }
+    writer.write_distributed(states_path(type, one.body), ids, values, n);
+  }
+}
+
+template <int dim>
+void load_states(ElementForces<dim>& forces, const std::string& type,
+                 const CheckpointReader& reader) {
+  for (auto& one : forces.remembering) {
+    const std::vector<GlobalIndex> ids(one.numbers.begin(), one.numbers.end());
+    std::vector<double>& states = *one.group->states();
+    states =
+        reader.read_distributed<double>(states_path(type, one.body), ids, one.group->n_state());
+    reader.check(
+        std::all_of(states.begin(), states.end(), [](double x) { return std::isfinite(x); }),
+        "the states of elements of its soft solids are not finite");
+  }
+}
+
 }  // namespace
 
 template <int dim>
@@ -48,6 +89,7 @@ void DeformableSolids<dim>::save(CheckpointWriter& writer) const {
   writer.file().write_replicated(type_ + "/surface velocities",
                                  numbers_of<dim>(surface_.velocity(), surface_.velocity().size()),
                                  dim);
+  save_states(forces_, type_, writer);
 }
 
 template <int dim>
@@ -70,6 +112,7 @@ void DeformableSolids<dim>::load(const CheckpointReader& reader) {
   reader.check(velocity.size() == dim * surface_.velocity().size(),
                "the surface velocities of its soft solids are incomplete");
   surface_.place(points_of<dim>(velocity));
+  load_states(forces_, type_, reader);
   implicit_.end_step();
   update();
 }

@@ -38,11 +38,23 @@ ElementForces<dim>::ElementForces(const std::vector<DeformableBody<dim>>& bodies
       const auto kept =
           elements_seen(shifted(group->corners(), begin), numbers.rank, nodes.comm->getRank());
       elements[b].push_back(group->restricted(kept, local));
+      if (const int n = group->n_state(); n > 0) {
+        ElementGroup<dim>& own = *elements[b].back();
+        own.states()->assign(kept.size() * n, 0);
+        remembering.push_back({static_cast<int>(b), &own, kept});
+      }
       corners.push_back(elements[b].back()->corners());
     }
   }
   stiffness = NodeMatrix<dim>(nodes.n_owned(), corners);
   damping = stiffness;
+}
+
+template <int dim>
+bool ElementForces<dim>::end_step(const Nodes& x, double dt) {
+  for (const Remembering& one : remembering)
+    one.group->end_step(x, dt);
+  return !remembering.empty();
 }
 
 template <int dim>

@@ -152,12 +152,12 @@ void ImplicitForces<dim>::update() {
 }
 
 template <int dim>
-void ImplicitForces<dim>::end_step() {
+void ImplicitForces<dim>::end_step(bool changed) {
   before_.reset();
   moved_ = false;
   linearisation_ = Teuchos::null;
   implicit_force_ = Teuchos::null;  // S1 needs another one
-  if (linearised_)
+  if (linearised_ || changed)
     update();
 }
 

@@ -44,7 +44,8 @@ class ImplicitForces : public NonlinearSolids<dim> {
   /// Forces at the present positions; for second-order bodies that have moved, those of S2.
   /// Collective.
   void update();
-  void end_step();  ///< Collective
+  /// Forces of the next S1; `changed`: they have changed at the present positions. Collective.
+  void end_step(bool changed = false);
 
   void linearise(double dt, const Vector& velocity) override;
   RCP<const Vector> linearisation() const override { return linearisation_; }

@@ -69,8 +69,9 @@ if(NOT soft_height LESS 0.588 OR NOT stiff_height GREATER 0.5956)
   message(FATAL_ERROR "The strip hangs at ${soft_height} m, with fibres at ${stiff_height} m.")
 endif()
 
-# A coupling that derives from one that ships, a contact model, and a joint with a target, each a project of four lines.
-foreach(project coupling contact joint)
+# A coupling that derives from one that ships, a contact model, a joint with a target, and a material with a memory, each a project
+# of four lines.
+foreach(project coupling contact joint viscoelastic)
   set(folder "${copy}/${project}")
   run_step("Configuring the ${project}" ${CMAKE_COMMAND} -S "${folder}" -B "${folder}/build" -G "${GENERATOR}"
            "-DCMAKE_PREFIX_PATH=${prefix}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
@@ -114,6 +115,25 @@ endforeach()
 refuse_step(2 "is \"scrw\".*did you mean \"screw\"" "${simulate}" "${screw}" --set "Joints/Screw/Type=scrw")
 refuse_step(2 "\"Led\".*Did you mean \"Lead\"" "${simulate}" "${screw}" --set "Joints/Screw/Led=0.1")
 refuse_step(2 "is \"smooth stop\".*did you mean \"smooth step\"" "${simulate}" "${screw}" --set "Joints/Shoulder/Target/Type=smooth stop")
+
+# A held strip whose stress relaxes: A E_xx^2 (mu + lambda/2) = 20.3606 J stay, three times as much fall as exp(-2 t/0.5 s).
+set(strip "${copy}/viscoelastic/strip.yaml")
+foreach(ranks 1 2)
+  run_step("The material with a memory on ${ranks} ranks" ${MPIEXEC} -np ${ranks} "${simulate}" "${strip}" --output "${copy}/strip-${ranks}")
+  last_value("${copy}/strip-${ranks}/history.csv" "elastic_energy" energy)
+  if(NOT energy MATCHES "^32\\.69276")
+    message(FATAL_ERROR "The strip has ${energy} J on ${ranks} ranks.")
+  endif()
+endforeach()
+run_step("Half of the strip's scene" "${simulate}" "${strip}" --output "${copy}/strip-halves" --set "Time/Steps=10")
+run_step("The other half" "${simulate}" "${strip}" --output "${copy}/strip-halves" --restart "${copy}/strip-halves/checkpoint-000010.h5")
+expect_same("${copy}/strip-1/bodies.csv" "${copy}/strip-halves/bodies.csv")
+last_value("${copy}/strip-halves/history.csv" "elastic_energy" energy_of_halves)
+last_value("${copy}/strip-1/history.csv" "elastic_energy" energy)
+if(NOT energy STREQUAL energy_of_halves)
+  message(FATAL_ERROR "The strip has ${energy_of_halves} J after a restart, ${energy} J without.")
+endif()
+refuse_step(2 "\"Relaxation Times\".*Did you mean \"Relaxation Time\"" "${simulate}" "${strip}" --set "Solids/Strip/Material/Relaxation Times=1")
 
 if(HAS_MODULE)
   run_step("Python" ${CMAKE_COMMAND} -E env "PYTHONPATH=${prefix}/lib/python3/dist-packages" "${PYTHON}"

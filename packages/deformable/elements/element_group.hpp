@@ -40,6 +40,13 @@ class ElementGroup {
   /// Adds B [N s/m], damping force = -B v: symmetric positive semidefinite, zero for rigid motions.
   virtual void add_damping(const Nodes& x, NodeMatrix<dim>& damping) const = 0;
 
+  /// Numbers that a law with a memory keeps of each element; 0: it has none.
+  virtual int n_state() const { return 0; }
+  /// Changes the states over a step of dt [s] that ends at x.
+  virtual std::vector<double>* states() { return nullptr; }
+  /// Changes them over a step of dt [s] that ends at x.
+  virtual void end_step(const Nodes& /*x*/, double /*dt*/) {}
+
  protected:
   ElementGroup() = default;
   ElementGroup(const ElementGroup&) = default;

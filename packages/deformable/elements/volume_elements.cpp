@@ -19,14 +19,58 @@ struct VolumeElement {
   double volume;  ///< at rest [m^dim]
 };
 
+/// A law without a memory: that of element e is that of all.
 template <int dim>
-class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElements<dim>> {
+struct ElasticLaw {
+  std::shared_ptr<const Material<dim>> material;
+
+  double energy_density(const Tensor<dim>& f, std::ptrdiff_t) const {
+    return material->energy_density(f);
+  }
+  Tensor<dim> stress(const Tensor<dim>& f, std::ptrdiff_t) const { return material->stress(f); }
+  TensorDerivative<dim> stress_derivative(const Tensor<dim>& f, std::ptrdiff_t) const {
+    return material->stress_derivative(f);
+  }
+  static int n_state() { return 0; }
+  static std::vector<double>* all_states() { return nullptr; }
+  void end_step(const Tensor<dim>&, std::ptrdiff_t, double) {}
+};
+
+/// A law with a memory, and the states of all elements.
+template <int dim>
+struct RememberingLaw {
+  std::shared_ptr<const Material<dim>> material;
+  std::vector<double> states;
+
+  double energy_density(const Tensor<dim>& f, std::ptrdiff_t e) const {
+    return material->energy_density(f) + memory().energy_density(f, state(e));
+  }
+  Tensor<dim> stress(const Tensor<dim>& f, std::ptrdiff_t e) const {
+    return material->stress(f) + memory().stress(f, state(e));
+  }
+  TensorDerivative<dim> stress_derivative(const Tensor<dim>& f, std::ptrdiff_t e) const {
+    return material->stress_derivative(f) + memory().stress_derivative(f, state(e));
+  }
+  int n_state() const { return memory().n_state(); }
+  std::vector<double>* all_states() { return &states; }
+  void end_step(const Tensor<dim>& f, std::ptrdiff_t e, double dt) {
+    memory().end_step(f, dt, Eigen::Map<Eigen::VectorXd>(&states[e * n_state()], n_state()));
+  }
+
+ private:
+  const MaterialMemory<dim>& memory() const { return *material->memory(); }
+  Eigen::Map<const Eigen::VectorXd> state(std::ptrdiff_t e) const {
+    return {&states[e * n_state()], n_state()};
+  }
+};
+
+template <int dim, typename Law>
+class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElements<dim, Law>> {
  public:
   using Nodes = typename ElementGroup<dim>::Nodes;
 
-  VolumeElements(const VolumeMesh<dim>& rest, std::shared_ptr<const Material<dim>> material,
-                 const StrainRateDamping& damping)
-      : material_(std::move(material)), damping_(damping) {
+  VolumeElements(const VolumeMesh<dim>& rest, Law law, const StrainRateDamping& damping)
+      : law_(std::move(law)), damping_(damping) {
     for (int e = 0; e < static_cast<int>(rest.elements.size()); ++e) {
       VolumeElement<dim> element;
       element.corners = rest.elements[e];
@@ -44,7 +88,7 @@ class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElement
     double energy = 0;
     for (const auto& element : elements_) {
       const Tensor<dim> f = deformation_gradient(element, x);
-      const Tensor<dim> pull = -element.volume * material_->stress(f);
+      const Tensor<dim> pull = -element.volume * law_.stress(f, number(element));
       // The first corner takes what keeps the sum at zero.
       Point<dim> rest = Point<dim>::Zero();
       for (int k = 1; k <= dim; ++k) {
@@ -54,7 +98,7 @@ class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElement
       }
       force[element.corners[0]] += rest;
       if (element.corners[0] < n_owned)
-        energy += element.volume * material_->energy_density(f);
+        energy += element.volume * law_.energy_density(f, number(element));
     }
     return energy;
   }
@@ -66,13 +110,13 @@ class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElement
         continue;
       const Tensor<dim> f = deformation_gradient(element, x);
       Eigen::Matrix3d stress = Eigen::Matrix3d::Zero(), strain = Eigen::Matrix3d::Zero();
-      stress.topLeftCorner<dim, dim>() =
-          material_->stress(f) * f.transpose() / std::max(std::abs(f.determinant()), flattest);
+      stress.topLeftCorner<dim, dim>() = law_.stress(f, number(element)) * f.transpose() /
+                                         std::max(std::abs(f.determinant()), flattest);
       strain.topLeftCorner<dim, dim>() = 0.5 * (f.transpose() * f - Tensor<dim>::Identity());
       states.corners.insert(states.corners.end(), element.corners.begin(), element.corners.end());
       states.stress.push_back(stress);
       states.strain.push_back(strain);
-      states.energy_density.push_back(material_->energy_density(f));
+      states.energy_density.push_back(law_.energy_density(f, number(element)));
     }
   }
 
@@ -80,7 +124,7 @@ class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElement
     int n_clamped = 0;
     for (const auto& element : elements_) {
       TensorDerivative<dim> derivative =
-          material_->stress_derivative(deformation_gradient(element, x));
+          law_.stress_derivative(deformation_gradient(element, x), number(element));
       const bool clamped = clamp_eigenvalues<dim * dim>(derivative);
       n_clamped += clamped && element.corners[0] < stiffness.n_rows() ? 1 : 0;
       add_matrix(element, derivative, stiffness);
@@ -103,8 +147,19 @@ class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElement
     }
   }
 
+  int n_state() const override { return law_.n_state(); }
+  std::vector<double>* states() override { return law_.all_states(); }
+  void end_step(const Nodes& x, double dt) override {
+    for (const auto& element : elements_)
+      law_.end_step(deformation_gradient(element, x), number(element), dt);
+  }
+
  private:
-  using ElementList<dim, VolumeElement<dim>, VolumeElements<dim>>::elements_;
+  using ElementList<dim, VolumeElement<dim>, VolumeElements<dim, Law>>::elements_;
+
+  std::ptrdiff_t number(const VolumeElement<dim>& element) const {
+    return &element - elements_.data();
+  }
 
   static Tensor<dim> deformation_gradient(const VolumeElement<dim>& element, const Nodes& x) {
     Tensor<dim> f = Tensor<dim>::Zero();
@@ -131,7 +186,7 @@ class VolumeElements : public ElementList<dim, VolumeElement<dim>, VolumeElement
     }
   }
 
-  std::shared_ptr<const Material<dim>> material_;
+  Law law_;
   StrainRateDamping damping_;
 };
 
@@ -156,7 +211,12 @@ template <int dim>
 std::unique_ptr<ElementGroup<dim>> volume_elements(const VolumeMesh<dim>& rest,
                                                    std::shared_ptr<const Material<dim>> material,
                                                    const StrainRateDamping& damping) {
-  return std::make_unique<VolumeElements<dim>>(rest, std::move(material), damping);
+  if (material->memory() == nullptr)
+    return std::make_unique<VolumeElements<dim, ElasticLaw<dim>>>(
+        rest, ElasticLaw<dim>{std::move(material)}, damping);
+  std::vector<double> states(rest.elements.size() * material->memory()->n_state(), 0);
+  return std::make_unique<VolumeElements<dim, RememberingLaw<dim>>>(
+      rest, RememberingLaw<dim>{std::move(material), std::move(states)}, damping);
 }
 
 template bool clamp_eigenvalues<4>(Eigen::Matrix<double, 4, 4>&);

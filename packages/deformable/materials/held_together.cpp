@@ -28,6 +28,7 @@ class HeldTogether : public Material<dim> {
     result.diagonal().array() += stiffness_ * excess;
     return result + 2 * stiffness_ / longest * stacked<dim>(f) * stacked<dim>(f).transpose();
   }
+  const MaterialMemory<dim>* memory() const override { return material_->memory(); }
 
  private:
   static constexpr double longest = 16;  ///< L^2: four times the length at rest

@@ -24,6 +24,34 @@ struct LameConstants {
 /// InputError.
 LameConstants lame_constants(double youngs_modulus, double poisson_ratio);
 
+/// Side of a law whose stress depends on the past, by a state of some numbers in each element: what
+/// it adds to the energy and the stress of the law. While a step is solved states stay as they are,
+/// and the law is hyperelastic; they change where the step ends, at the shape that it has reached.
+/// All functions are local, and depend on their arguments alone.
+template <int dim>
+class MaterialMemory {
+ public:
+  using State = Eigen::Ref<const Eigen::VectorXd>;
+  virtual ~MaterialMemory() = default;
+  /// Size of a state, whose numbers are 0 in a body as it is meshed.
+  virtual int n_state() const = 0;
+  /// Energy per volume at rest [J/m^3].
+  virtual double energy_density(const Tensor<dim>& f, const State& state) const = 0;
+  /// d energy / dF [Pa].
+  virtual Tensor<dim> stress(const Tensor<dim>& f, const State& state) const = 0;
+  /// d stress / dF [Pa].
+  virtual TensorDerivative<dim> stress_derivative(const Tensor<dim>& f,
+                                                  const State& state) const = 0;
+  /// Changes a state over a step of dt [s] that ends at f, by which energy may fall but not rise.
+  virtual void end_step(const Tensor<dim>& f, double dt,
+                        Eigen::Ref<Eigen::VectorXd> state) const = 0;
+
+ protected:
+  MaterialMemory() = default;
+  MaterialMemory(const MaterialMemory&) = default;
+  MaterialMemory& operator=(const MaterialMemory&) = default;
+};
+
 /// A hyperelastic law. In 2D it is that of plane strain: F_zz = 1.
 template <int dim>
 class Material {
@@ -40,6 +68,8 @@ class Material {
   virtual LameConstants at_rest() const;
   /// True if rotations strain it, so that they count from the start. Local.
   virtual bool feels_rotations() const { return false; }
+  /// Part that depends on the past, and is added; null: none. Lives as long as the law.
+  virtual const MaterialMemory<dim>* memory() const { return nullptr; }
 
  protected:
   Material() = default;
