@@ -51,6 +51,21 @@ TEST(Registry, ListsInOrderOfRegistration) {
   EXPECT_TRUE(registry.schemas()[0].parameters.isParameter("Edge"));
 }
 
+TEST(Registry, SchemasMayDependOnArguments) {
+  RegistryOf<ParameterList(int n), double(const ParameterList&, double)> sums("sum");
+  sums.add(
+      "terms", "As many as are asked for.",
+      [](int n) {
+        ParameterList list;
+        for (int k = 0; k < n; ++k)
+          declare(list, std::to_string(k), 0.5, "A term [1].");
+        return list;
+      },
+      [](const ParameterList& list, double scale) { return scale * list.numParams(); });
+  EXPECT_EQ(sums.schemas(2)[0].parameters.numParams(), 2);
+  EXPECT_EQ(sums.create("terms", sums.valid_parameters("terms", 3), 1.5), 4.5);
+}
+
 TEST(Registry, UnknownNameGetsASuggestionAndTheList) {
   EXPECT_EQ(input_error([] { shapes().create("sqare", ParameterList(), 1.0); }),
             "There is no shape \"sqare\". Did you mean \"square\"?\nRegistered:\n  square: All "
