@@ -1,5 +1,9 @@
 #include "deformable/body_mesh.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "base/errors.hpp"
 #include "deformable/mesh/hollow_generators.hpp"
 #include "deformable/mesh/mesh_file.hpp"
@@ -68,6 +72,34 @@ VolumeMesh<dim> generate(const ParameterList& list, const std::string& shape, do
   return torus_volume<dim>(number("Radius"), number("Tube Radius"), spacing);
 }
 
+/// Linear elements are too stiff in bending: with 1, 2, 4 and 8 across a beam by a factor of 3.3
+/// and by 60, 15 and 5 % (study perpendicular-flap). In space their number grows with the third
+/// power.
+template <int dim>
+constexpr int least_elements_across = dim == 2 ? 8 : 4;
+
+/// Smallest extent of a generated shape: the thickness of a wall, where it has one [m].
+template <int dim>
+double thinnest_extent(const ParameterList& list, const std::string& shape) {
+  const auto number = [&](const char* parameter) { return list.get<double>(parameter); };
+  if (shape == "box")
+    return vector_value<dim>(list, "Size").minCoeff();
+  if (shape == "hollow ball" || shape == "tube")
+    return number("Thickness");
+  if (shape == "torus")
+    return 2 * number("Tube Radius");
+  if (shape == "cylinder")
+    return std::min(2 * number("Radius"), number("Length"));
+  if (shape == "ball")
+    return 2 * number("Radius");
+  const SpindleShape spindle = spindle_of<dim>(list);
+  const auto thickest = [](const std::vector<double>& halves) {
+    return 2 * *std::max_element(halves.begin(), halves.end());
+  };
+  return dim == 2 ? thickest(spindle.half_heights)
+                  : std::min(thickest(spindle.half_heights), thickest(spindle.half_widths));
+}
+
 }  // namespace
 
 template <int dim>
@@ -103,9 +135,12 @@ void declare_deformable_geometry(ParameterList& body) {
                                 "folder of the scene.");
   declare_mesh_repair(list);
   declare_optional<double>(list, "Mesh Spacing",
-                           "Longest step of the lattice of a generated mesh [m]; default one grid "
-                           "cell. Linear elements are too stiff in bending: with 1, 2, 4 and 8 of "
-                           "them across a beam by a factor of 3.3 and by 60, 15 and 5 %.");
+                           fmt::format("Longest step of the lattice of a generated mesh [m]; "
+                                       "default one grid cell, but at most 1/{} of the shape's "
+                                       "smallest extent. Linear elements are too stiff in "
+                                       "bending: with 1, 2, 4 and 8 of them across a beam by a "
+                                       "factor of 3.3 and by 60, 15 and 5 %.",
+                                       least_elements_across<dim>));
   for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Size", "Mesh Spacing"})
     set_positive(list, size);
 }
@@ -123,8 +158,10 @@ VolumeMesh<dim> make_body_mesh(const ParameterList& geometry, double grid_spacin
     if (repair.orient)
       orient_elements(mesh);
   } else {
-    const double spacing =
-        geometry.isParameter("Mesh Spacing") ? geometry.get<double>("Mesh Spacing") : grid_spacing;
+    const double spacing = geometry.isParameter("Mesh Spacing")
+                               ? geometry.get<double>("Mesh Spacing")
+                               : std::min(grid_spacing, thinnest_extent<dim>(geometry, shape) /
+                                                            least_elements_across<dim>);
     check_mesh_size(geometry, spacing, dim, name);
     mesh = generate<dim>(geometry, shape, spacing);
   }

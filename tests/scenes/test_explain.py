@@ -104,8 +104,8 @@ class Explain(unittest.TestCase):
                     "Geometry": {"Shape": "box", "Size": size, **({"Mesh Spacing": spacing} if spacing else {})}}
         told = ('"Flap" has about {} of its elements across; linear ones are too stiff in bending, 1 across by a factor of 3, '
                 "2 by 60 %, 4 by 15 %, 8 by 5 %")
-        for size, spacing, expected in (((.125, .75), None, [told.format(2)]), ((.125, .75), .125, [told.format(1)]),
-                                        ((.125, .75), .125 / 4, []), ((.25, .25), None, [])):
+        for size, spacing, expected in (((.125, .75), .125 / 2, [told.format(2)]), ((.125, .75), .125, [told.format(1)]),
+                                        ((.125, .75), .125 / 4, []), ((.125, .75), None, []), ((.25, .25), None, [])):
             self.assertEqual(self.explained({"Flap": soft(size, spacing)})[1], expected)
 
     def test_what_is_a_little_less_than_two_cells_thick_is_not_called_two(self):

@@ -1,6 +1,8 @@
 // Errors that a scene may contain.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "deformable/materials/material.hpp"
 #include "support.hpp"
@@ -108,6 +110,27 @@ TEST(Input, SubStepsAreOfExplicitForces) {
               cloth<3>(ball + sheet + sub_steps + text("Time Integration", "semi-implicit"));
             }),
             "");
+}
+
+/// Elements between the faces of a box across its last axis.
+template <int dim>
+std::size_t elements_across(const DeformableBody<dim>& made) {
+  std::set<long> places;
+  for (const Point<dim>& x : made.position)
+    places.insert(std::lround(1e6 * x[dim - 1]));
+  return places.size() - 1;
+}
+
+// The grid's spacing is 0.1 here: linear elements of that size would lock in bending.
+TEST(Input, WhatIsThinHasElementsEnoughToBend) {
+  const std::string rest = number("Density", "1") + material("linear");
+  const auto plate = [&](const std::string& size, const std::string& more) {
+    return geometry("box", numbers("Size", size) + more) + rest;
+  };
+  EXPECT_EQ(elements_across(body<2>(plate("1, 0.1", ""))), 8U);
+  EXPECT_EQ(elements_across(body<3>(plate("0.4, 0.4, 0.1", ""))), 4U);
+  EXPECT_EQ(elements_across(body<2>(plate("1, 0.1", number("Mesh Spacing", "0.1")))), 1U);
+  EXPECT_EQ(elements_across(body<2>(plate("2, 1.2", ""))), 12U);
 }
 
 // Linear elasticity takes a rotation for strain: it counts from how the body lies at the start.

@@ -42,7 +42,7 @@ struct Ball {
   CellField pressure;
 };
 
-/// What is linear is carried exactly, by a way that falls off with the distance from the ball; what
+/// A linear pressure is carried exactly, by a way that falls off with the distance from the ball; what
 /// the ball leaves has a pressure, and what is far off has its own.
 template <int dim>
 void expect_carried() {
