@@ -42,7 +42,7 @@ class ElementGroup {
 
   /// Numbers that a law with a memory keeps of each element; 0: it has none.
   virtual int n_state() const { return 0; }
-  /// Changes the states over a step of dt [s] that ends at x.
+  /// The states, of one element after the other; null: the law has no memory.
   virtual std::vector<double>* states() { return nullptr; }
   /// Changes them over a step of dt [s] that ends at x.
   virtual void end_step(const Nodes& /*x*/, double /*dt*/) {}
