@@ -17,7 +17,7 @@ template <int dim>
 struct Mover {
   Point<dim> way;                ///< mean displacement of its surface [m]
   double reach = 0;              ///< distance from which on nothing goes along [m]
-  std::vector<Box<dim>> bounds;  ///< of its images, after it has moved
+  std::vector<Box<dim>> bounds;  ///< boxes of its images, after it has moved
 };
 
 template <int dim>

@@ -42,8 +42,8 @@ struct Ball {
   CellField pressure;
 };
 
-/// A linear pressure is carried exactly, by a way that falls off with the distance from the ball; what
-/// the ball leaves has a pressure, and what is far off has its own.
+/// A linear pressure is carried exactly, by a way that falls off with the distance from the ball;
+/// what the ball leaves has a pressure, and what is far off has its own.
 template <int dim>
 void expect_carried() {
   Ball<dim> ball(Point<dim>::LinSpaced(0.6, -0.8) * Ball<dim>::h);
