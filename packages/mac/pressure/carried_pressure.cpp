@@ -67,7 +67,8 @@ struct Nearby {
   const Box<dim>* bounds = nullptr;
 };
 
-/// Calls f(cell, way) for owned cells that something goes along at, with what it goes by [m].
+/// Calls f(cell, way, distance) for owned cells that something goes along at: what it goes by, and
+/// how far from the box around the solid [m].
 template <int dim, typename Function>
 void for_each_carried_cell(const TiledGrid<dim>& grid, const std::vector<Mover<dim>>& movers,
                            const Function& f) {
@@ -87,17 +88,19 @@ void for_each_carried_cell(const TiledGrid<dim>& grid, const std::vector<Mover<d
     for (int cell = first; cell < first + (1 << log_tile_volume<dim>); ++cell) {
       if (!grid.in_domain(cell))
         continue;
-      double largest = 0;
+      double largest = 0, least = 0;
       const Mover<dim>* nearest = nullptr;
       for (const auto& [mover, bounds] : near) {
-        const double part = 1 - bounds->exteriorDistance(grid.center(cell)) / mover->reach;
+        const double distance = bounds->exteriorDistance(grid.center(cell));
+        const double part = 1 - distance / mover->reach;
         if (part > largest) {
           largest = part;
+          least = distance;
           nearest = mover;
         }
       }
       if (nearest)
-        f(cell, Point<dim>(largest * nearest->way));
+        f(cell, Point<dim>(largest * nearest->way), least);
     }
   }
 }
@@ -145,10 +148,13 @@ void carry_pressure(const MacDomain<dim>& domain, const MovingSurface<dim>& surf
   // Cells whose centres solids hold say little of the pressure beside them: they, too, get theirs
   // from the fluid.
   std::vector<CellState> known = cells, wanted = cells;
-  const Point<dim> deep = Point<dim>::Constant((farthest + 1) * h);
-  for_each_carried_cell(grid, movers, [&](int cell, const Point<dim>&) {
+  const double deep = (farthest + 1) * h;
+  const Point<dim> around = Point<dim>::Constant(deep);
+  const double away = around.norm() + farthest * h;  // from where on nothing was near before either
+  for_each_carried_cell(grid, movers, [&](int cell, const Point<dim>&, double distance) {
     const Point<dim> x = grid.center(cell);
-    if (cells[cell] == CellState::outside || !surface.before->touches(Box<dim>(x - deep, x + deep)))
+    if (cells[cell] == CellState::outside || distance > away ||
+        !surface.before->touches(Box<dim>(x - around, x + around)))
       return;
     if (surface.before->inside(x) >= 0)
       known[cell] = CellState::solid;
@@ -157,7 +163,7 @@ void carry_pressure(const MacDomain<dim>& domain, const MovingSurface<dim>& surf
   fill_flags(domain.full_halo, known);
   fill_flags(domain.full_halo, wanted);
   const CellField field = extended_pressure<dim>(domain, wanted, known, pressure, gradient);
-  for_each_carried_cell(grid, movers, [&](int cell, const Point<dim>& way) {
+  for_each_carried_cell(grid, movers, [&](int cell, const Point<dim>& way, double) {
     pressure[cell] = value_at<dim>(grid, field, cell, -way / h) + gradient.dot(way);
     if (wanted[cell] == CellState::fluid)
       cells[cell] = CellState::fluid;
