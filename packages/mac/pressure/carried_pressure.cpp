@@ -16,6 +16,7 @@ constexpr double farthest = 2;
 template <int dim>
 struct Mover {
   Point<dim> way;                ///< mean displacement of its surface [m]
+  double speed = 0;              ///< that over the step [m/s]
   double reach = 0;              ///< distance from which on nothing goes along [m]
   std::vector<Box<dim>> bounds;  ///< boxes of its images, after it has moved
 };
@@ -28,15 +29,15 @@ double area_of(const std::array<Point<dim>, dim>& corners) {
     return (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2;
 }
 
-template <int dim>
-Point<dim> mean_displacement(const MovingSurface<dim>& surface, const SolidDescription& solid) {
+/// Mean of a value of each simplex of a solid, by area.
+template <int dim, typename Value>
+Point<dim> surface_mean(const SurfaceSnapshot<dim>& surface, const SolidDescription& solid,
+                        const Value& value) {
   Point<dim> sum = Point<dim>::Zero();
   double area = 0;
   for (int s = solid.simplex_begin; s < solid.simplex_end; ++s) {
-    const auto before = surface.before->corners(s), after = surface.after->corners(s);
-    const double size = area_of<dim>(after);
-    for (int k = 0; k < dim; ++k)
-      sum += size / dim * (after[k] - before[k]);
+    const double size = area_of<dim>(surface.corners(s));
+    sum += size * value(s);
     area += size;
   }
   return area > 0 ? Point<dim>(sum / area) : sum;
@@ -45,17 +46,28 @@ Point<dim> mean_displacement(const MovingSurface<dim>& surface, const SolidDescr
 template <int dim>
 std::vector<Mover<dim>> find_movers(const MovingSurface<dim>& surface, double spacing) {
   constexpr double round_off = 1e-12;
-  const SurfaceSnapshot<dim>& after = *surface.after;
+  const SurfaceSnapshot<dim>&before = *surface.before, &after = *surface.after;
+  const auto displacement = [&](int simplex) {
+    const auto from = before.corners(simplex), to = after.corners(simplex);
+    Point<dim> sum = Point<dim>::Zero();
+    for (int k = 0; k < dim; ++k)
+      sum += (to[k] - from[k]) / dim;
+    return sum;
+  };
+  const auto velocity = [&](int simplex) {
+    return surface.velocity({simplex, Barycentric<dim>::Constant(1.0 / dim)});
+  };
   std::vector<Mover<dim>> movers;
   for (int i = 0; i < static_cast<int>(after.solids().size()); ++i) {
     const SolidDescription& solid = after.solids()[i];
     if (!solid.closed)
       continue;
-    Point<dim> way = mean_displacement(surface, solid);
+    Point<dim> way = surface_mean<dim>(after, solid, displacement);
     if (way.norm() <= round_off * spacing)
       continue;
     way *= std::min(1.0, farthest * spacing / way.norm());
-    movers.push_back({way, after.own_bounds(i).sizes().maxCoeff(), after.bounds_of_images(i)});
+    movers.push_back({way, surface_mean<dim>(after, solid, velocity).norm(),
+                      after.own_bounds(i).sizes().maxCoeff(), after.bounds_of_images(i)});
   }
   return movers;
 }
@@ -67,8 +79,8 @@ struct Nearby {
   const Box<dim>* bounds = nullptr;
 };
 
-/// Calls f(cell, way, distance) for owned cells that something goes along at: what it goes by, and
-/// how far from the box around the solid [m].
+/// Calls f(cell, mover, distance) for owned cells that something goes along at: with which solid,
+/// and how far from the box around it [m].
 template <int dim, typename Function>
 void for_each_carried_cell(const TiledGrid<dim>& grid, const std::vector<Mover<dim>>& movers,
                            const Function& f) {
@@ -100,7 +112,7 @@ void for_each_carried_cell(const TiledGrid<dim>& grid, const std::vector<Mover<d
         }
       }
       if (nearest)
-        f(cell, Point<dim>(largest * nearest->way), least);
+        f(cell, *nearest, least);
     }
   }
 }
@@ -138,20 +150,19 @@ double value_at(const TiledGrid<dim>& grid, const CellField& field, int cell,
 
 template <int dim>
 void carry_pressure(const MacDomain<dim>& domain, const MovingSurface<dim>& surface,
-                    const Point<dim>& gradient, std::vector<CellState>& cells,
+                    const PressureScales<dim>& scales, std::vector<CellState>& cells,
                     CellField& pressure) {
   const std::vector<Mover<dim>> movers = find_movers(surface, domain.spacing());
   if (movers.empty())
     return;
   const TiledGrid<dim>& grid = domain.grid;
   const double h = domain.spacing();
-  // Cells whose centres solids hold say little of the pressure beside them: they, too, get theirs
-  // from the fluid.
+  // Cells whose centres solids hold say little of how the pressure goes on beside them.
   std::vector<CellState> known = cells, wanted = cells;
   const double deep = (farthest + 1) * h;
   const Point<dim> around = Point<dim>::Constant(deep);
   const double away = around.norm() + farthest * h;  // from where on nothing was near before either
-  for_each_carried_cell(grid, movers, [&](int cell, const Point<dim>&, double distance) {
+  for_each_carried_cell(grid, movers, [&](int cell, const Mover<dim>&, double distance) {
     const Point<dim> x = grid.center(cell);
     if (cells[cell] == CellState::outside || distance > away ||
         !surface.before->touches(Box<dim>(x - around, x + around)))
@@ -162,9 +173,15 @@ void carry_pressure(const MacDomain<dim>& domain, const MovingSurface<dim>& surf
   });
   fill_flags(domain.full_halo, known);
   fill_flags(domain.full_halo, wanted);
-  const CellField field = extended_pressure<dim>(domain, wanted, known, pressure, gradient);
-  for_each_carried_cell(grid, movers, [&](int cell, const Point<dim>& way, double) {
-    pressure[cell] = value_at<dim>(grid, field, cell, -way / h) + gradient.dot(way);
+  CellField field = extended_pressure<dim>(domain, wanted, known, pressure, scales.at_rest);
+  domain.full_halo.fill(field);
+  for_each_carried_cell(grid, movers, [&](int cell, const Mover<dim>& mover, double distance) {
+    const Point<dim> way = (1 - distance / mover.reach) * mover.way;
+    const double most = (scales.inertia * mover.speed + scales.friction) * mover.speed;
+    const double change =
+        value_at<dim>(grid, field, cell, -way / h) + scales.at_rest.dot(way) - field[cell];
+    const double present = cells[cell] == CellState::fluid ? pressure[cell] : field[cell];
+    pressure[cell] = present + std::clamp(change, -most, most);
     if (wanted[cell] == CellState::fluid)
       cells[cell] = CellState::fluid;
   });
@@ -172,9 +189,9 @@ void carry_pressure(const MacDomain<dim>& domain, const MovingSurface<dim>& surf
   domain.full_halo.fill(pressure);
 }
 
-template void carry_pressure<2>(const MacDomain<2>&, const MovingSurface<2>&, const Point<2>&,
-                                std::vector<CellState>&, CellField&);
-template void carry_pressure<3>(const MacDomain<3>&, const MovingSurface<3>&, const Point<3>&,
-                                std::vector<CellState>&, CellField&);
+template void carry_pressure<2>(const MacDomain<2>&, const MovingSurface<2>&,
+                                const PressureScales<2>&, std::vector<CellState>&, CellField&);
+template void carry_pressure<3>(const MacDomain<3>&, const MovingSurface<3>&,
+                                const PressureScales<3>&, std::vector<CellState>&, CellField&);
 
 }  // namespace lockstep

@@ -50,10 +50,12 @@ void MacFlow<dim>::project(CellField pressure) {
 
 template <int dim>
 void MacFlow<dim>::carry_pressure(const MovingSurface<dim>& surface) {
-  if (geometry.state.surface && !liquid && accepted_step > 0)
-    lockstep::carry_pressure<dim>(domain, surface,
-                                  parameters.density * accepted_step * accepted_acceleration,
-                                  accepted_cells, accepted_pressure);
+  if (!geometry.state.surface || liquid || accepted_step == 0)
+    return;
+  const PressureScales<dim> scales{parameters.density * accepted_step * accepted_acceleration,
+                                   parameters.density * accepted_step,
+                                   parameters.viscosity.viscosity * accepted_step / domain.spacing()};
+  lockstep::carry_pressure<dim>(domain, surface, scales, accepted_cells, accepted_pressure);
 }
 
 template <int dim>
