@@ -16,7 +16,7 @@ constexpr double farthest = 2;
 template <int dim>
 struct Mover {
   Point<dim> way;                ///< mean displacement of its surface [m]
-  double speed = 0;              ///< that over the step [m/s]
+  double speed = 0;              ///< mean speed of its surface [m/s]
   double reach = 0;              ///< distance from which on nothing goes along [m]
   std::vector<Box<dim>> bounds;  ///< boxes of its images, after it has moved
 };

@@ -9,8 +9,8 @@ template <int dim>
 struct PressureScales {
   Point<dim> at_rest =
       Point<dim>::Zero();  ///< gradient that gravity makes in fluid at rest [Pa s/m]
-  double inertia = 0;   ///< of fluid that a solid moves, over the square of its speed [kg/m^dim s]
-  double friction = 0;  ///< likewise over its speed [Pa s^2/m]
+  double inertia = 0;      ///< pressure over the square of a solid's speed [kg/m^dim s]
+  double friction = 0;     ///< pressure over its speed [Pa s^2/m]
 };
 
 /// Carries the pressure of the last step along with the closed solids that have moved since: what

@@ -52,9 +52,10 @@ template <int dim>
 void MacFlow<dim>::carry_pressure(const MovingSurface<dim>& surface) {
   if (!geometry.state.surface || liquid || accepted_step == 0)
     return;
-  const PressureScales<dim> scales{parameters.density * accepted_step * accepted_acceleration,
-                                   parameters.density * accepted_step,
-                                   parameters.viscosity.viscosity * accepted_step / domain.spacing()};
+  const PressureScales<dim> scales{
+      parameters.density * accepted_step * accepted_acceleration,
+      parameters.density * accepted_step,
+      parameters.viscosity.viscosity * accepted_step / domain.spacing()};
   lockstep::carry_pressure<dim>(domain, surface, scales, accepted_cells, accepted_pressure);
 }
 
