@@ -12,7 +12,7 @@ namespace {
 /// is asked for; it goes into them by one more.
 constexpr double farthest = 2;
 
-/// A closed solid that has moved.
+/// A rigid closed solid that has moved.
 template <int dim>
 struct Mover {
   Point<dim> way;                ///< mean displacement of its surface [m]
@@ -60,7 +60,7 @@ std::vector<Mover<dim>> find_movers(const MovingSurface<dim>& surface, double sp
   std::vector<Mover<dim>> movers;
   for (int i = 0; i < static_cast<int>(after.solids().size()); ++i) {
     const SolidDescription& solid = after.solids()[i];
-    if (!solid.closed)
+    if (!solid.closed || !solid.rigid)
       continue;
     Point<dim> way = surface_mean<dim>(after, solid, displacement);
     if (way.norm() <= round_off * spacing)

@@ -13,9 +13,9 @@ struct PressureScales {
   double friction = 0;     ///< pressure over its speed [Pa s^2/m]
 };
 
-/// Carries the pressure of the last step along with the closed solids that have moved since: what
-/// lies around a solid goes by the mean displacement of its surface, less so farther off, and from
-/// the solid's own length on not at all. What gravity makes in fluid at rest stays where it is, and
+/// Carries the pressure of the last step along with the rigid closed solids that have moved since:
+/// what lies around one goes by the mean displacement of its surface, less so farther off, and from
+/// its own length on not at all. What gravity makes in fluid at rest stays where it is, and
 /// no pressure changes by more than the solid's motion makes: a load that fluid bears does not go
 /// along. `cells`: states of cells when the pressure was found; those in and beside such solids
 /// take a value continued from the fluid and count as fluid afterwards. Halos must be valid, and
