@@ -285,7 +285,8 @@ ForceImpulse<dim> MacFluid<dim>::add_forces(double time, double dt) {
     push_surface(dt);
     given.impulse += flow_.surface_impulse;
   }
-  // Last: a fall on top of a source's velocity would bring more, the longer the step is.
+  // After all forces: a step's fall on top of a source's velocity would bring more, the longer it
+  // is.
   given.impulse += push_sources(time);
   flow_.domain.halo.fill(flow_.prediction);
   given.impulse += sum_over_ranks(mine, flow_.domain.grid.comm());
@@ -385,8 +386,6 @@ void MacFluid<dim>::advect(double time, double dt, const MovingSurface<dim>& sur
 
 template <int dim>
 void MacFluid<dim>::populate_uncovered(const MovingSurface<dim>& surface) {
-  if (viscosity_.acts())
-    flow_.carry_pressure(surface);
   const GridState<dim>& state = flow_.geometry.state;
   if (state.surface || flow_.parameters.phases.gas) {
     const MacDomain<dim>& domain = flow_.domain;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mac/pressure/carried_pressure.hpp"
 #include "mac/pressure/pressure_system.hpp"
 #include "mac/state/initial_state.hpp"
 #include "mac/tiles/moving_tiles.hpp"
@@ -46,17 +45,6 @@ void MacFlow<dim>::project(CellField pressure) {
   scaled_pressure = std::move(pressure);
   subtract_gradient<dim>(domain, geometry, scaled_pressure, prediction);
   domain.halo.fill(prediction);
-}
-
-template <int dim>
-void MacFlow<dim>::carry_pressure(const MovingSurface<dim>& surface) {
-  if (!geometry.state.surface || liquid || accepted_step == 0)
-    return;
-  const PressureScales<dim> scales{
-      parameters.density * accepted_step * accepted_acceleration,
-      parameters.density * accepted_step,
-      parameters.viscosity.viscosity * accepted_step / domain.spacing()};
-  lockstep::carry_pressure<dim>(domain, surface, scales, accepted_cells, accepted_pressure);
 }
 
 template <int dim>

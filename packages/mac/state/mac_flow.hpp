@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/moving_surface.hpp"
 #include "liquid/liquid.hpp"
 #include "mac/pressure/pressure_operator.hpp"
 #include "mac/state/advection_history.hpp"
@@ -55,10 +54,6 @@ struct MacFlow {
 
   /// Takes these pressures: u* -= rho^-1 G p̂ on free faces. Collective.
   void project(CellField pressure);
-  /// The pressure of the last accepted step goes along with the solids that have moved since
-  /// (mac/pressure/carried_pressure.hpp). Under a free surface it stays: there is no simple fluid
-  /// at rest to leave behind. Collective.
-  void carry_pressure(const MovingSurface<dim>& surface);
   /// Velocities on walls and inflows at a time. Sets the halo. Collective.
   void set_prescribed(double at_time, FaceField<dim>& of) const;
   /// Largest sum_a |u_a| of u^n [m/s]; looked for once. Collective.
