@@ -72,9 +72,8 @@ VolumeMesh<dim> generate(const ParameterList& list, const std::string& shape, do
   return torus_volume<dim>(number("Radius"), number("Tube Radius"), spacing);
 }
 
-/// Linear elements are too stiff in bending: with 1, 2, 4 and 8 across a beam by a factor of 3.3
-/// and by 60, 15 and 5 % (study perpendicular-flap). In space their number grows with the third
-/// power.
+/// Linear elements are too stiff in bending: with 1, 2, 4 and 8 across a beam by a factor of 4 and
+/// by 75, 19 and 5 % (beams_test.cpp). In space their number grows with the third power.
 template <int dim>
 constexpr int least_elements_across = dim == 2 ? 8 : 4;
 
@@ -139,7 +138,7 @@ void declare_deformable_geometry(ParameterList& body) {
                                        "default one grid cell, but at most 1/{} of the shape's "
                                        "smallest extent. Linear elements are too stiff in "
                                        "bending: with 1, 2, 4 and 8 of them across a beam by a "
-                                       "factor of 3.3 and by 60, 15 and 5 %.",
+                                       "factor of 4 and by 75, 19 and 5 %.",
                                        least_elements_across<dim>));
   for (const char* size : {"Radius", "Length", "Tube Radius", "Thickness", "Size", "Mesh Spacing"})
     set_positive(list, size);

@@ -75,7 +75,7 @@ std::string coarse_mesh(const SurfaceSnapshot<dim>& surface, int solid) {
     return "";
   return fmt::format(
       "has about {:.0f} of its elements across; linear ones are too stiff in bending, 1 across by "
-      "a factor of 3, 2 by 60 %, 4 by 15 %, 8 by 5 %",
+      "a factor of 4, 2 by 75 %, 4 by 19 %, 8 by 5 %",
       std::max(across, 1.0));
 }
 

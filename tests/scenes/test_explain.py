@@ -102,8 +102,8 @@ class Explain(unittest.TestCase):
         def soft(size, spacing):
             return {"Type": "deformable body", "Density": 1000., "Position": (.5, .5), "Material": {"Young's Modulus": 1e6},
                     "Geometry": {"Shape": "box", "Size": size, **({"Mesh Spacing": spacing} if spacing else {})}}
-        told = ('"Flap" has about {} of its elements across; linear ones are too stiff in bending, 1 across by a factor of 3, '
-                "2 by 60 %, 4 by 15 %, 8 by 5 %")
+        told = ('"Flap" has about {} of its elements across; linear ones are too stiff in bending, 1 across by a factor of 4, '
+                "2 by 75 %, 4 by 19 %, 8 by 5 %")
         for size, spacing, expected in (((.125, .75), .125 / 2, [told.format(2)]), ((.125, .75), .125, [told.format(1)]),
                                         ((.125, .75), .125 / 4, []), ((.125, .75), None, []), ((.25, .25), None, [])):
             self.assertEqual(self.explained({"Flap": soft(size, spacing)})[1], expected)

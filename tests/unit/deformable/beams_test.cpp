@@ -100,5 +100,44 @@ TEST(Beams, FlagsSagAsPublished) {
   }
 }
 
+/// Sag of the tip of a cantilever ten times as long as thick over that of Timoshenko's beam, for
+/// elements of a scene's default size or of `spacing`. The grid's is the thickness, 0.1.
+template <int dim>
+double sag_of_beam(const std::string& spacing = "") {
+  const double youngs_modulus = 1e3, gravity = 1e-3;
+  const std::string across = dim == 2 ? "0.1" : "0.1, 0.1";
+  const std::string geometry_of_beam =
+      geometry("box", numbers("Size", "1, " + across) +
+                          (spacing.empty() ? "" : number("Mesh Spacing", spacing)));
+  const std::string beyond = dim == 2 ? "1" : "1, 1", before = dim == 2 ? "-1" : "-1, -1";
+  Point<dim> down = Point<dim>::Zero();
+  down[1] = -gravity;
+  Alone<dim> alone(
+      model<dim>({geometry_of_beam + material("linear", "1000", "0") + number("Density", "1") +
+                  text("Time Integration", "fully-implicit") +
+                  pinned("-1, " + before, "-0.499, " + beyond, dim == 2 ? "x, y" : "x, y, z")},
+                 down));
+  alone.step(1e4);  // so long that it comes to rest
+  double lowest = 0;
+  for (const Point<dim>& x : alone.solids.surface().vertices)
+    lowest = std::min(lowest, x.y() + 0.05);
+  const double bending = 1.5 * gravity / (youngs_modulus * 0.01);  // L = 1, density 1
+  const double shear = gravity / (2 * 5. / 6 * youngs_modulus / 2);
+  return -lowest / (bending + shear);
+}
+
+/// The figures of docs/parameters and of --explain. A mesh as fine as the grid would be of no use.
+TEST(Beams, BendTheMoreTheMoreElementsAreAcross) {
+  if (world()->getSize() > 1)
+    GTEST_SKIP() << "The same on several ranks, only slower.";
+  EXPECT_NEAR(1 / sag_of_beam<2>("0.1"), 4, 0.02);
+  EXPECT_NEAR(1 / sag_of_beam<2>("0.05"), 1.75, 0.02);
+  EXPECT_NEAR(1 / sag_of_beam<2>("0.025"), 1.19, 0.01);
+  EXPECT_NEAR(1 / sag_of_beam<2>("0.0125"), 1.05, 0.01);
+  EXPECT_NEAR(1 / sag_of_beam<3>("0.05"), 1.74, 0.02);
+  EXPECT_NEAR(1 / sag_of_beam<2>(), 1.05, 0.01);
+  EXPECT_NEAR(1 / sag_of_beam<3>(), 1.18, 0.01);
+}
+
 }  // namespace
 }  // namespace lockstep::test

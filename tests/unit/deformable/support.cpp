@@ -2,6 +2,8 @@
 
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Vector.hpp>
+#include <algorithm>
+#include <cmath>
 
 namespace lockstep::test {
 
@@ -30,5 +32,19 @@ void Alone<dim>::step(double dt) {
 
 template struct Alone<2>;
 template struct Alone<3>;
+
+double order_of_motion(const std::function<std::unique_ptr<DeformableSolids<2>>()>& make) {
+  const auto reach_at_end = [&](int n_steps) {
+    Alone<2> alone(make());
+    for (int i = 0; i < n_steps; ++i)
+      alone.step(0.01 / n_steps);
+    double right = 0;
+    for (const auto& x : alone.solids.surface().vertices)
+      right = std::max(right, x.x());
+    return right;
+  };
+  const double coarse = reach_at_end(200), middle = reach_at_end(400), fine = reach_at_end(800);
+  return std::log2(std::abs((coarse - middle) / (middle - fine)));
+}
 
 }  // namespace lockstep::test

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "base/errors.hpp"
@@ -85,5 +87,9 @@ struct Alone {
   SolidSystem<dim> system;
   double time = 0;  ///< [s]
 };
+
+/// Observed order in time of how far to the right a model without fluid reaches at 0.01 s, from
+/// 200, 400 and 800 steps.
+double order_of_motion(const std::function<std::unique_ptr<DeformableSolids<2>>()>& make);
 
 }  // namespace lockstep::test
