@@ -117,7 +117,7 @@ double sag_of_beam(const std::string& spacing = "") {
                   text("Time Integration", "fully-implicit") +
                   pinned("-1, " + before, "-0.499, " + beyond, dim == 2 ? "x, y" : "x, y, z")},
                  down));
-  alone.step(1e4);  // so long that it comes to rest
+  alone.step(1e4);  // Fully implicit steps damp: it is at rest after one of 1e4 s.
   double lowest = 0;
   for (const Point<dim>& x : alone.solids.surface().vertices)
     lowest = std::min(lowest, x.y() + 0.05);
