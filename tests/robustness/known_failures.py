@@ -22,7 +22,6 @@ KNOWN = {
     4646: LIQUID,
     4661: LIQUID,
     4681: LIQUID,
-    5469: "MueLu as the preconditioner of pressure-schur is not positive definite",
     5477: LIQUID,
     5550: LIQUID,
     5573: CRUSHED,
