@@ -134,10 +134,11 @@ void open_cut_cells(const MacDomain<dim>& domain, const OpenFractions<dim>& frac
 
 /// The centroid of the open part of a face; or, where that lies in a solid (its tip is in the
 /// face), a place beside the edge of the face from which one sees farthest towards its centre. That
-/// names no axis and no end, so that a scene and its mirror image choose alike.
+/// names no axis and no end, so that a scene and its mirror image choose alike. Solids that overlap
+/// close a part of the face twice, so that what their moments leave of it may lie far outside.
 template <int dim>
 Point<dim> place_in_fluid(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
-  Point<dim> place = volume.open_center;
+  Point<dim> place = volume.open_center.cwiseMax(volume.box.min()).cwiseMin(volume.box.max());
   if (surface.inside(place) < 0)
     return place;
   double farthest = 0;

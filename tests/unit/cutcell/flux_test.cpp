@@ -393,4 +393,35 @@ TEST(Flux, JetsInPartlyOpenFacesDoNotLast) {
   }
 }
 
+// What two solids both fill counts twice, so that the moments of both may put what is left of a
+// face anywhere: velocities were fetched from there, far outside of the tank, too.
+TEST(Flux, OpenPlacesLieInTheirFacesWhereSolidsOverlap) {
+  FluxOptions options;
+  options.weights = FaceWeights::volumes;
+  GlobalIndex n_places = 0, n_outside = 0;
+  for (int k = 0; k < 10; ++k) {
+    const FluxCase<2> c(
+        16, {ball<2>(0.23, {0.42, 0.47}, 0.03), ball<2>(0.2, {0.66 + 0.007 * k, 0.49}, 0.03)},
+        options);
+    const auto& grid = c.fluid->domain().grid;
+    const Point<2> half = Point<2>::Constant(0.5 / 16 + 1e-12);
+    GlobalIndex here = 0, outside = 0;
+    for (int axis = 0; axis < 2; ++axis) {
+      grid.for_each_owned_face(axis, [&](int face) {
+        const auto& places = c.fluid->geometry().state.open_centers[axis];
+        const auto place = places.find(face);
+        if (place == places.end())
+          return;
+        const Point<2> center = grid.face_center(axis, face);
+        here += 1;
+        outside += Box<2>(center - half, center + half).contains(place->second) ? 0 : 1;
+      });
+    }
+    n_places += sum_all(c.solids->comm(), here);
+    n_outside += sum_all(c.solids->comm(), outside);
+  }
+  EXPECT_EQ(n_outside, 0);
+  EXPECT_GT(n_places, 200);
+}
+
 }  // namespace lockstep::test
