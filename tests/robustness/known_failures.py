@@ -26,7 +26,6 @@ KNOWN = {
     5550: LIQUID,
     5573: CRUSHED,
     6136: CRUSHED,
-    7116: "a stiff tether on flesh of 2 Pa: a second Newton iteration of the coupled solve overshoots, and gives it 26 J; with one it is stable",
     8015: "a heavy body lies on the floor: block-lu ends at 4e-10 with its contacts held, and the scene wants 1e-10",
     8137: "liquid off by 5.6 % of its volume, where 5 % is the bound (18 % while contact acted outside beside closed fluid): cause not known",
     9134: CRUSHED,

@@ -75,7 +75,7 @@ class Seed:
             return
         self.failures += [*check_tables(self.scene, one), *check_frames(self.scene, one)]
         if has_energy_bound(self.scene):
-            # What such a step changes is near the round-off of velocities: it cannot be solved for to the scene's tolerance.
+            # Changes in such a step are near the round-off of velocities: they cannot be solved for to the scene's tolerance.
             start = self.simulate("start", "--steps", 1, "--set", f"Time/Fixed Step={1e-7 * self.scene.dt!r}",
                                   "--set", "Solver/Tolerance=1e-4")
             if start:

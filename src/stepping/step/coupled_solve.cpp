@@ -70,8 +70,9 @@ CoupledSolution CoupledSolve<dim>::converge(const StepContext<dim>& context,
 }
 
 /// Linearises implicit forces anew if they are not yet those at the velocity found: first, as often
-/// as the user wants, about that velocity; then, where the energy of the step would otherwise rise,
-/// about the motion that lowers it most under the pressure found. False: the solution stands.
+/// as the user wants, about that velocity or part of the way to it; then, where the energy of the
+/// step would otherwise rise, about the motion that lowers it most under the pressure found. False:
+/// the solution stands.
 template <int dim>
 bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
                                 CoupledSolution& solution, Vector& momentum) {
@@ -82,7 +83,7 @@ bool CoupledSolve<dim>::improve(const StepContext<dim>& context, int n_solves,
   const Vector& velocity = *solution.velocity;
   if (n_solves < options_.newton_iterations) {
     const RCP<const Vector> before = solids.explicit_momentum(context.begin, context.dt);
-    solids.linearise(context.dt, velocity);
+    solids.linearise(context.dt, *tolerable_velocity<dim>(solids, context.dt, velocity));
     momentum.update(1, *solids.explicit_momentum(context.begin, context.dt), -1, *before, 1);
     return true;
   }

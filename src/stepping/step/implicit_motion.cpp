@@ -43,7 +43,7 @@ class Descent {
   /// `gradient`: of the model at `from`.
   Descent(const SolidSystem<dim>& solids, double dt, const LinearOperator& block,
           const Vector& from, const Vector& gradient, const Vector& to)
-      : solids_(solids), dt_(dt), from_(from), change_(to, Teuchos::Copy) {
+      : solids_(solids), dt_(dt), from_(from, Teuchos::Copy), change_(to, Teuchos::Copy) {
     change_.update(-1, from, 1);
     const NonlinearBodies<dim> bodies(solids);
     // A translation strains nothing, and how large it is depends on the frame.
@@ -86,7 +86,7 @@ class Descent {
  private:
   const SolidSystem<dim>& solids_;
   double dt_;
-  const Vector& from_;
+  Vector from_;
   Vector change_;
   std::vector<double> slopes_, curvatures_;  ///< model's derivatives without translations [J]
   std::vector<double> whole_slopes_, whole_curvatures_;
@@ -218,14 +218,30 @@ void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before
   }
 }
 
+namespace {
+/// The way from the velocity about which forces are linearised to `velocity`, where the model of
+/// Phi is least.
 template <int dim>
-bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocity) {
+Descent<dim> way_to(const SolidSystem<dim>& solids, double dt, const Vector& velocity) {
   const RCP<const LinearOperator> block = solids.full_block(Teuchos::null, dt);
   const RCP<Vector> at = linearisation_of(solids);
   Vector gradient(*at, Teuchos::Copy), product(solids.map());
   gradient.update(-1, velocity, 1);
   apply(*block, gradient, product);
-  return Descent<dim>(solids, dt, *block, *at, product, velocity).excess(1) <= good;
+  return Descent<dim>(solids, dt, *block, *at, product, velocity);
+}
+}  // namespace
+
+template <int dim>
+bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocity) {
+  return way_to(solids, dt, velocity).excess(1) <= good;
+}
+
+template <int dim>
+RCP<const Vector> tolerable_velocity(const SolidSystem<dim>& solids, double dt,
+                                     const Vector& velocity) {
+  const Descent<dim> way = way_to(solids, dt, velocity);
+  return way.at(tolerable_part(way));
 }
 
 template SettledMotion<2> settle_motion<2>(SolidSystem<2>&, ContactModel<2>*, const StepContext<2>&,
@@ -238,6 +254,8 @@ template SettledMotion<3> settle_motion<3>(SolidSystem<3>&, ContactModel<3>*, co
 template RCP<const LinearOperator> implicit_response(const SolidSystem<3>&, double);
 template void bound_sweep<2>(const SolidSystem<2>&, double, const Vector&, Vector&);
 template void bound_sweep<3>(const SolidSystem<3>&, double, const Vector&, Vector&);
+template RCP<const Vector> tolerable_velocity(const SolidSystem<2>&, double, const Vector&);
+template RCP<const Vector> tolerable_velocity(const SolidSystem<3>&, double, const Vector&);
 template bool is_settled<2>(const SolidSystem<2>&, double, const Vector&);
 template bool is_settled<3>(const SolidSystem<3>&, double, const Vector&);
 

@@ -61,4 +61,11 @@ void bound_sweep(const SolidSystem<dim>& solids, double dt, const Vector& before
 template <int dim>
 bool is_settled(const SolidSystem<dim>& solids, double dt, const Vector& velocity);
 
+/// The farthest velocity on the way from that of the present linearisation to `velocity`, which a
+/// solve has found, whose potential is not far above the model: where to linearise anew.
+/// Collective.
+template <int dim>
+RCP<const Vector> tolerable_velocity(const SolidSystem<dim>& solids, double dt,
+                                     const Vector& velocity);
+
 }  // namespace lockstep

@@ -393,8 +393,8 @@ TEST(Flux, JetsInPartlyOpenFacesDoNotLast) {
   }
 }
 
-// What two solids both fill counts twice, so that the moments of both may put what is left of a
-// face anywhere: velocities were fetched from there, far outside of the tank, too.
+// A part of a face that two solids both fill counts twice, so that their moments may put what is
+// left of it anywhere: velocities were fetched from there, far outside of the tank, too.
 TEST(Flux, OpenPlacesLieInTheirFacesWhereSolidsOverlap) {
   FluxOptions options;
   options.weights = FaceWeights::volumes;
