@@ -189,6 +189,8 @@ def main():
     arguments = parser.parse_args()
     if arguments.print is not None:
         sys.exit(print(random_scene(arguments.print).xml, end=""))
+    if arguments.log:
+        arguments.log.parent.mkdir(parents=True, exist_ok=True)
     begin, known = time.monotonic(), logged(arguments.log)
     missing = [seed for seed in arguments.seeds if seed not in known or known[seed].failures]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
