@@ -165,6 +165,20 @@ void BodyNodes<dim>::hold(Nodes& values) const {
     values[node].setZero();
 }
 
+template <int dim>
+std::vector<char> BodyNodes<dim>::free_bodies() const {
+  std::vector<double> n_held(bodies.size(), 0);
+  for (const int dof : held.dofs())
+    ++n_held[body_of[dof / dim]];
+  for (const auto& [node, carrier] : attached)
+    ++n_held[body_of[node]];
+  sum_all(comm, n_held.data(), static_cast<int>(n_held.size()));
+  std::vector<char> is_free(bodies.size());
+  for (std::size_t b = 0; b < is_free.size(); ++b)
+    is_free[b] = n_held[b] == 0;
+  return is_free;
+}
+
 template struct BodyNodes<2>;
 template struct BodyNodes<3>;
 

@@ -45,6 +45,8 @@ struct BodyNodes {
   }
   /// Sets values of owned nodes to zero where they are held or carried.
   void hold(Nodes& values) const;
+  /// The bodies of which nothing is held or carried; the same on all ranks. Collective.
+  std::vector<char> free_bodies() const;
 
   Communicator comm;
   Point<dim> gravity;

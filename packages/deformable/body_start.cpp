@@ -141,8 +141,8 @@ void declare_body_start(ParameterList& list) {
       "together with the fluid; stable at any step, but of first order: the energy of a mode of "
       "angular frequency w falls by 3/2 (w dt)^2 of itself a step. second-order: the same with the "
       "elastic forces of the middle of the step, where it falls by (w dt)^4/8 while w dt is small; "
-      "for free vibrations and waves. The step of explicit and semi-implicit bodies is bounded by "
-      "the stiffest element.");
+      "for free vibrations and waves; volumes that nothing holds go along arcs as they turn. The "
+      "step of explicit and semi-implicit bodies is bounded by the stiffest element.");
   declare_at_least(
       list, "Most Sub-Steps", 1, 1,
       "Explicit and semi-implicit only: elastic forces are averaged over up to so many sub-steps "

@@ -46,10 +46,11 @@ DeformableSolids<dim>::DeformableSolids(const std::string& type,
     : type_(type),
       nodes_(bodies, gravity, comm, start_time),
       surface_(bodies, nodes_),
+      turn_(nodes_, states_),
       forces_(bodies, nodes_),
-      implicit_(nodes_, forces_),
+      implicit_(nodes_, turn_, forces_),
       explicit_(nodes_, forces_),
-      sweep_(nodes_, surface_, states_),
+      sweep_(nodes_, surface_, states_, turn_),
       strain_limit_(all_limited_edges(bodies, nodes_), nodes_.space, comm->getRank()) {
   nodes_.space.forget_numbers();
   surface_.place(surface_.velocity());
@@ -86,9 +87,18 @@ RigidMotions DeformableSolids<dim>::near_null_space() const {
   return space;
 }
 
+/// The unknown of S1 is the velocity at the begin of the arc on which a body turns: its inner
+/// forces give the mean one, V + drift.
 template <int dim>
 void DeformableSolids<dim>::explicit_momentum(double, double dt, Vector& momentum) const {
-  apply(*nodes_.mass_matrix, *nodes_.velocity, momentum);
+  RCP<const Vector> start = nodes_.velocity;
+  if (dt > 0 && turn_.any() && !implicit_.has_moved()) {
+    Nodes at_begin = nodes_.space.owned(*start);
+    for (int i = 0; i < nodes_.n_owned(); ++i)
+      at_begin[i] -= turn_.drift(i);
+    start = nodes_.space.vector(at_begin);
+  }
+  apply(*nodes_.mass_matrix, *start, momentum);
   if (dt == 0)
     return;
   const bool any_explicit = std::any_of(nodes_.bodies.begin(), nodes_.bodies.end(),
@@ -113,7 +123,10 @@ template <int dim>
 void DeformableSolids<dim>::begin_step(double time, double dt) {
   step_ = dt;
   explicit_.begin_step(dt, nodes_.held.begin_step(time));
-  implicit_.soften(dt);
+  const std::vector<char> is_free = nodes_.free_bodies();
+  turn_.begin(dt, is_free);
+  implicit_.soften(dt, is_free);
+  implicit_.look_ahead();
 }
 
 template <int dim>
@@ -144,6 +157,7 @@ void DeformableSolids<dim>::set_velocity(const Vector& velocity) {
   limiting_impulse_.clear();
   // The first of two kicks ends nothing, nor does what moves bodies outside of steps.
   const bool ends = implicit_.has_moved() && step_ > 0 && forces_.end_step(nodes_.x, step_);
+  turn_.end();
   implicit_.end_step(ends);
   if (ends) {
     step_ = 0;
@@ -168,12 +182,15 @@ void DeformableSolids<dim>::limit_motion(double dt, Vector& velocity) {
 
 template <int dim>
 void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
+  if (dt != turn_.dt())
+    turn_.end();  // no step, but a motion by the way
   const Nodes change = nodes_.space.with_ghosts(velocity);
   Nodes before = nodes_.x;
   for (int i = 0; i < nodes_.space.n_local(); ++i)
-    nodes_.x[i] += dt * change[i];
+    nodes_.x[i] += dt * (change[i] + turn_.drift(i));
   surface_.move(change);
-  implicit_.moved(std::move(before), change);
+  turn_.find_rotation(change);
+  implicit_.moved(std::move(before), dt);
   update();
 }
 

@@ -98,6 +98,7 @@ class DeformableSolids : public SolidModel<dim>,
   std::string type_;
   BodyNodes<dim> nodes_;
   NodalSurface<dim> surface_;
+  BodyTurn<dim> turn_;
   ElementForces<dim> forces_;
   ImplicitForces<dim> implicit_;
   ExplicitElasticity<dim> explicit_;

@@ -9,8 +9,9 @@
 namespace lockstep {
 
 template <int dim>
-ImplicitForces<dim>::ImplicitForces(const BodyNodes<dim>& nodes, ElementForces<dim>& forces)
-    : nodes_(nodes), forces_(forces), stiffest_rate_(nodes.bodies.size(), 0) {}
+ImplicitForces<dim>::ImplicitForces(const BodyNodes<dim>& nodes, const BodyTurn<dim>& turn,
+                                    ElementForces<dim>& forces)
+    : nodes_(nodes), turn_(turn), forces_(forces), stiffest_rate_(nodes.bodies.size(), 0) {}
 
 template <int dim>
 bool ImplicitForces<dim>::any() const {
@@ -50,12 +51,15 @@ RCP<const LinearOperator> ImplicitForces<dim>::implicit_force(double dt) const {
 
 /// Forces at the end of the step, for half of which they act, are late: of the strain that the
 /// present velocity makes in the step they see all, where a third would be right. Given back is
-/// half of it, of second order a quarter, the most that leaves every mode damped.
+/// half of it, of second order a quarter, the most that leaves every mode damped. Rigid motions
+/// strain nothing, which a stiffness of turned positions does not know.
 template <int dim>
 void ImplicitForces<dim>::add_midpoint_correction(double dt, Vector& momentum) const {
   if (!any())
     return;
-  const Nodes v = nodes_.space.with_ghosts(*nodes_.velocity);
+  Nodes v = nodes_.space.with_ghosts(*nodes_.velocity);
+  for (int i = 0; turn_.any() && i < nodes_.space.n_local(); ++i)
+    v[i] -= turn_.rigid_velocity(i);
   const auto values = momentum.getDataNonConst();
   for (int i = 0; i < nodes_.n_owned(); ++i) {
     if (!nodes_.body(i).is_implicit())
@@ -91,17 +95,11 @@ void ImplicitForces<dim>::bound_frequencies() {
 /// motions in C, so nothing could be solved; the body is made as soft as that. What moves it by a
 /// length l within a step strains it by l/(a^2 h) at most. What is held has no such motions.
 template <int dim>
-void ImplicitForces<dim>::soften(double dt) {
+void ImplicitForces<dim>::soften(double dt, const std::vector<char>& is_free) {
   constexpr double stiffest = 1e4;
-  std::vector<double> n_held(nodes_.bodies.size(), 0);
-  for (const int dof : nodes_.held.dofs())
-    ++n_held[nodes_.body_of[dof / dim]];
-  for (const auto& attached : nodes_.attached)
-    ++n_held[nodes_.body_of[attached.first]];
-  sum_all(nodes_.comm, n_held.data(), static_cast<int>(n_held.size()));
   bool changed = false;
-  for (std::size_t b = 0; b < n_held.size(); ++b) {
-    const double a = n_held[b] > 0 ? 0 : stiffest_rate_[b] * dt;
+  for (std::size_t b = 0; b < is_free.size(); ++b) {
+    const double a = is_free[b] == 0 ? 0 : stiffest_rate_[b] * dt;
     const double softening =
         nodes_.bodies[b].is_implicit() && a > stiffest ? stiffest / a * (stiffest / a) : 1;
     changed = changed || softening != forces_.softening[b];
@@ -112,48 +110,60 @@ void ImplicitForces<dim>::soften(double dt) {
 }
 
 template <int dim>
-void ImplicitForces<dim>::moved(Nodes before, const Nodes& velocity) {
-  moved_ = true;
-  linearisation_ = Teuchos::null;
-  if (std::none_of(nodes_.bodies.begin(), nodes_.bodies.end(),
-                   [](const SoftBody& body) { return body.is_second_order(); }))
+void ImplicitForces<dim>::look_ahead() {
+  beside_.clear();
+  if (!turn_.any())
     return;
-  before_ = std::move(before);
-  for (int i = 0; i < nodes_.space.n_local(); ++i) {
-    if (!nodes_.body(i).is_second_order())
-      (*before_)[i] = nodes_.x[i];
-  }
-  Nodes halfway(nodes_.n_owned(), Point<dim>::Zero());
-  for (int i = 0; i < nodes_.n_owned(); ++i) {
-    if (nodes_.body(i).is_second_order())
-      halfway[i] = velocity[i];
-  }
-  linearisation_ = nodes_.space.vector(halfway);
+  Nodes rigid(nodes_.n_owned());
+  for (int i = 0; i < nodes_.n_owned(); ++i)
+    rigid[i] = turn_.rigid_velocity(i);
+  for (int i = 0; i < nodes_.space.n_local(); ++i)
+    beside_.push_back(turn_.dt() * turn_.drift(i));
+  linearise(0.5 * turn_.dt(), *nodes_.space.vector(rigid));  // S1 is over half of the step
 }
 
-/// Forces of S2 are halfway, for dt V / 2 = x - x(halfway) of the motion.
+/// Forces of second order are linearised at the middle of the way and about the velocity at its
+/// end, both without what S2 does.
+template <int dim>
+void ImplicitForces<dim>::moved(Nodes before, double dt) {
+  moved_ = true;
+  beside_.clear();
+  linearisation_ = Teuchos::null;
+  if (dt == 0 || std::none_of(nodes_.bodies.begin(), nodes_.bodies.end(),
+                              [](const SoftBody& body) { return body.is_second_order(); }))
+    return;
+  before_ = std::move(before);
+  moved_dt_ = dt;
+  Nodes velocity(nodes_.space.n_local(), Point<dim>::Zero());
+  if (turn_.any())
+    beside_.assign(velocity.size(), Point<dim>::Zero());
+  for (int i = 0; i < nodes_.space.n_local(); ++i) {
+    if (!nodes_.body(i).is_second_order()) {
+      (*before_)[i] = nodes_.x[i];
+      continue;
+    }
+    const Point<dim> to_end = turn_.change_to_end(i);
+    velocity[i] = (nodes_.x[i] - (*before_)[i]) / dt + to_end;
+    if (turn_.any())
+      beside_[i] = turn_.rise_of_arc(i) - 0.5 * dt * to_end;
+  }
+  linearisation_ = nodes_.space.vector(velocity);
+}
+
+/// Forces of S2 are halfway.
 template <int dim>
 void ImplicitForces<dim>::update() {
-  linearised_ = before_.has_value();
-  if (!linearised_) {
+  linearised_ = false;
+  if (before_)
+    linearise(moved_dt_, Vector(*linearisation_, Teuchos::Copy));
+  else
     assemble(nodes_.x);
-    return;
-  }
-  Nodes halfway = nodes_.x, rest = nodes_.x;
-  for (int i = 0; i < nodes_.space.n_local(); ++i) {
-    halfway[i] = 0.5 * ((*before_)[i] + nodes_.x[i]);
-    rest[i] -= halfway[i];
-  }
-  assemble(halfway);
-  for (int i = 0; i < nodes_.n_owned(); ++i) {
-    if (nodes_.body(i).is_second_order())
-      forces_.elastic[i] += forces_.stiffness.row_times(i, rest);
-  }
 }
 
 template <int dim>
 void ImplicitForces<dim>::end_step(bool changed) {
   before_.reset();
+  beside_.clear();
   moved_ = false;
   linearisation_ = Teuchos::null;
   implicit_force_ = Teuchos::null;  // S1 needs another one
@@ -162,7 +172,8 @@ void ImplicitForces<dim>::end_step(bool changed) {
 }
 
 /// With x* = x + dt V the force of the next V' is f(x*) - dt K(x*) (V' - V): explicit is f + dt K
-/// V. Of second order, in S2: x and dt are those at the start and half of the step.
+/// V. Of second order, in S2: x and dt are those at the start and half of the step. Bodies that
+/// turn are turned along (`reached`).
 template <int dim>
 void ImplicitForces<dim>::linearise(double dt, const Vector& velocity) {
   const Nodes v = nodes_.space.with_ghosts(velocity);
@@ -218,6 +229,8 @@ std::vector<Point<dim>> ImplicitForces<dim>::reached(double dt, const Nodes& vel
   Nodes x = before_ ? *before_ : nodes_.x;
   for (int i = 0; i < nodes_.space.n_local(); ++i)
     x[i] += share_at(i) * dt * velocity[i];
+  for (std::size_t i = 0; i < beside_.size(); ++i)
+    x[i] += beside_[i];
   return x;
 }
 

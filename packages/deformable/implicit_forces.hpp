@@ -2,6 +2,7 @@
 #include <optional>
 #include <vector>
 
+#include "deformable/body_turn.hpp"
 #include "deformable/element_forces.hpp"
 #include "interfaces/solid_sides.hpp"
 
@@ -20,8 +21,9 @@ template <int dim>
 class ImplicitForces : public NonlinearSolids<dim> {
  public:
   using Nodes = std::vector<Point<dim>>;
-  /// Both must outlive it.
-  ImplicitForces(const BodyNodes<dim>& nodes, ElementForces<dim>& forces);
+  /// All must outlive it.
+  ImplicitForces(const BodyNodes<dim>& nodes, const BodyTurn<dim>& turn,
+                 ElementForces<dim>& forces);
 
   /// True if any body's elasticity is implicit.
   bool any() const;
@@ -37,10 +39,13 @@ class ImplicitForces : public NonlinearSolids<dim> {
 
   /// Bounds the frequencies of the bodies by the forces at the start. Collective.
   void bound_frequencies();
-  /// Softens the bodies that a step of dt cannot resolve. Collective.
-  void soften(double dt);
-  /// Positions have moved away from `before`, all local nodes', at `velocity`; `update` follows.
-  void moved(Nodes before, const Nodes& velocity);
+  /// Softens the bodies that a step of dt cannot resolve but for what holds them. Collective.
+  void soften(double dt, const std::vector<char>& is_free);
+  /// Forces of the coming S1 where bodies that turn will be after the step, strained as they are.
+  /// Collective.
+  void look_ahead();
+  /// Positions have moved away from `before`, all local nodes', in a step of dt; `update` follows.
+  void moved(Nodes before, double dt);
   /// Forces at the present positions; for second-order bodies that have moved, those of S2.
   /// Collective.
   void update();
@@ -58,6 +63,7 @@ class ImplicitForces : public NonlinearSolids<dim> {
   void assemble(const Nodes& x);
 
   const BodyNodes<dim>& nodes_;
+  const BodyTurn<dim>& turn_;
   ElementForces<dim>& forces_;
   std::vector<double> stiffest_rate_;  ///< bounds of the bodies' frequencies at the start [1/s]
   mutable RCP<const LinearOperator> implicit_force_;  ///< null: not asked for yet
@@ -65,6 +71,8 @@ class ImplicitForces : public NonlinearSolids<dim> {
   /// Positions at the start of the step [m], from `moved` to the end of the step, if bodies are of
   /// second order. Null on all ranks or on none, with nodes or without.
   std::optional<Nodes> before_;
+  double moved_dt_ = 0;  ///< length of that step [s]
+  Nodes beside_;         ///< ways of bodies that turn beside those straight on [m]; or empty
   bool moved_ = false;
   bool linearised_ = false;          ///< elsewhere than at the present positions
   RCP<const Vector> linearisation_;  ///< the velocity that leads there; null: zero

@@ -41,8 +41,8 @@ double swept(const Corners<dim>& corners, const Corners<dim>& step) {
 /// A shell ends at sides that one simplex alone has.
 template <int dim>
 VolumeSweep<dim>::VolumeSweep(const BodyNodes<dim>& nodes, const NodalSurface<dim>& surface,
-                              const std::vector<SolidState<dim>>& states)
-    : nodes_(nodes), surface_(surface), states_(states) {
+                              const std::vector<SolidState<dim>>& states, const BodyTurn<dim>& turn)
+    : nodes_(nodes), surface_(surface), states_(states), turn_(turn) {
   const SurfaceMesh<dim>& mesh = surface.mesh();
   std::vector<char> is_boundary(nodes_.n_owned(), 0);
   for (const SolidDescription& solid : surface.solids()) {
@@ -185,7 +185,10 @@ void VolumeSweep<dim>::sweep(double dt, const std::vector<double>& volumes,
   const auto& solids = surface_.solids();
   const Nodes own_direction = swelling();
   Nodes own_velocity = nodes_.space.owned(velocity);
-  const std::vector<Nodes> at_surface = surface_.gather({&own_direction, &own_velocity});
+  Nodes on_the_way = own_velocity;
+  for (int i = 0; i < nodes_.n_owned(); ++i)
+    on_the_way[i] += turn_.drift(i);
+  const std::vector<Nodes> at_surface = surface_.gather({&own_direction, &on_the_way});
   const Nodes &direction = at_surface[0], &surface_velocity = at_surface[1];
   std::vector<double> speed(solids.size(), 0);  // along the direction, of each solid
   for (std::size_t b = 0; b < solids.size(); ++b) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "deformable/body_turn.hpp"
 #include "deformable/nodal_surface.hpp"
 #include "interfaces/volume_sweeper.hpp"
 
@@ -13,7 +14,7 @@ class VolumeSweep : public VolumeSweeper<dim> {
   using Nodes = std::vector<Point<dim>>;
   /// All must outlive it; `states` are those of the bodies. Local.
   VolumeSweep(const BodyNodes<dim>& nodes, const NodalSurface<dim>& surface,
-              const std::vector<SolidState<dim>>& states);
+              const std::vector<SolidState<dim>>& states, const BodyTurn<dim>& turn);
 
   std::vector<char> can_sweep(const Box<dim>& domain) const override;
   RCP<const Vector> swept_per_velocity() const override;
@@ -27,6 +28,7 @@ class VolumeSweep : public VolumeSweeper<dim> {
   const BodyNodes<dim>& nodes_;
   const NodalSurface<dim>& surface_;
   const std::vector<SolidState<dim>>& states_;
+  const BodyTurn<dim>& turn_;
   std::vector<int> boundary_nodes_;  ///< owned ones, where shells end
 };
 

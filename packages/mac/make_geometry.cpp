@@ -2,6 +2,7 @@
 
 #include <Tpetra_Map.hpp>
 #include <algorithm>
+#include <optional>
 
 #include "liquid/gas/gas_faces.hpp"
 #include "liquid/surface/free_surface.hpp"
@@ -134,11 +135,15 @@ void open_cut_cells(const MacDomain<dim>& domain, const OpenFractions<dim>& frac
 
 /// The centroid of the open part of a face; or, where that lies in a solid (its tip is in the
 /// face), a place beside the edge of the face from which one sees farthest towards its centre. That
-/// names no axis and no end, so that a scene and its mirror image choose alike. Solids that overlap
-/// close a part of the face twice, so that what their moments leave of it may lie far outside.
+/// names no axis and no end, so that a scene and its mirror image choose alike. None if the
+/// centroid lies outside of the face: solids that overlap close a part of it twice, and their
+/// moments say nothing about the rest. It has what its neighbours have.
 template <int dim>
-Point<dim> place_in_fluid(const ControlVolume<dim>& volume, const SurfaceSnapshot<dim>& surface) {
+std::optional<Point<dim>> place_in_fluid(const ControlVolume<dim>& volume,
+                                         const SurfaceSnapshot<dim>& surface) {
   Point<dim> place = volume.open_center.cwiseMax(volume.box.min()).cwiseMin(volume.box.max());
+  if ((place - volume.open_center).norm() > 1e-9 * volume.box.sizes().maxCoeff())
+    return std::nullopt;
   if (surface.inside(place) < 0)
     return place;
   double farthest = 0;
@@ -170,7 +175,8 @@ void take_fraction(const OpenFractionRule<dim>& rule, int axis, int cell, Contro
   if (volume.open_fraction > 0) {
     geometry.face_table.set_open(axis, cell, volume.open_fraction);
     volume.open_center = rule.open_center(volume, surface);
-    geometry.state.open_centers[axis][cell] = place_in_fluid(volume, surface);
+    if (const auto place = place_in_fluid(volume, surface))
+      geometry.state.open_centers[axis][cell] = *place;
   } else {
     geometry.state.faces[axis][cell] = FaceState::coupled;
   }

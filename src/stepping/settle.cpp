@@ -243,7 +243,7 @@ class RestOfBodies {
 template <int dim>
 Found relax(const StillWater<dim>& water, const Components<dim>& components,
             const Vector& lengths) {
-  constexpr int most_tries = 300;
+  constexpr int most_tries = 600;
   const double gravity = components.fluid->gravity().norm();
   const double cell = components.fluid->smallest_length();
   const double usual = std::sqrt(cell / gravity), most = 0.5 * cell;
