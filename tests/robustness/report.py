@@ -154,7 +154,7 @@ All seeds that are known to fail, also beyond these, stand in `tests/robustness/
 def write_seams(page, seeds, results, ranks):
     """Says how many scenes with periodic seams came out the same on all numbers of ranks."""
     failing = [result for result in results if result.failures]
-    named = "".join(f"\n- seed {result.seed}: {known_failures.reason(result.seed) or result.failures[0][:200]}" for result in failing)
+    named = "".join(f"\n\n- seed {result.seed}: {known_failures.reason(result.seed) or result.failures[0][:200]}" for result in failing)
     refused = sum(result.refused for result in results)
     words = f"{', '.join(map(str, ranks[:-1]))} and {ranks[-1]}"
     command = (f"tests/robustness/random_scenes.py --seeds {ranges(seeds)} --ranks {' '.join(map(str, ranks))} "
@@ -162,8 +162,7 @@ def write_seams(page, seeds, results, ranks):
     body = f"""\
 {len(results)} scenes whose longest axis is periodic and of whole tiles, seeds {ranges(seeds)}, each on {words} ranks: {len(failing)} fail. Solids reach
 towards the seam, through which the multigrid solves. What is checked is that of the random scenes; {refused} runs were refused for a reason that
-their scene has.
-{named}
+their scene has.{named}
 
 {sum(result.core_seconds for result in results):.0f} s of a core. {made_by(command, {result.build for result in results})}"""
     write_section(page, "Periodic seams", body)
