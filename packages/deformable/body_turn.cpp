@@ -81,38 +81,39 @@ const typename BodyTurn<dim>::Turn* BodyTurn<dim>::turn_at(int node) const {
 }
 
 template <int dim>
-Point<dim> BodyTurn<dim>::rigid_velocity(int node) const {
+template <typename Function>
+Point<dim> BodyTurn<dim>::if_turning(int node, const Function& f) const {
   const Turn* turn = turn_at(node);
-  return turn ? Point<dim>(turn->velocity + rotate<dim>(turn->rate, arms_[node]))
-              : Point<dim>(Point<dim>::Zero());
+  return turn ? Point<dim>(f(*turn, arms_[node])) : Point<dim>(Point<dim>::Zero());
+}
+
+template <int dim>
+Point<dim> BodyTurn<dim>::rigid_velocity(int node) const {
+  return if_turning(node, [](const Turn& turn, const Point<dim>& arm) -> Point<dim> {
+    return turn.velocity + rotate<dim>(turn.rate, arm);
+  });
 }
 
 template <int dim>
 Point<dim> BodyTurn<dim>::drift(int node) const {
-  const Turn* turn = turn_at(node);
-  if (!turn)
-    return Point<dim>::Zero();
-  const Point<dim>& arm = arms_[node];
-  return (turn->whole * arm - arm) / dt_ - rotate<dim>(turn->rate, arm);
+  return if_turning(node, [this](const Turn& turn, const Point<dim>& arm) -> Point<dim> {
+    return (turn.whole * arm - arm) / dt_ - rotate<dim>(turn.rate, arm);
+  });
 }
 
 template <int dim>
 Point<dim> BodyTurn<dim>::rise_of_arc(int node) const {
-  const Turn* turn = turn_at(node);
-  if (!turn)
-    return Point<dim>::Zero();
-  const Point<dim>& arm = arms_[node];
-  return turn->half * arm - 0.5 * (arm + turn->whole * arm);
+  return if_turning(node, [](const Turn& turn, const Point<dim>& arm) -> Point<dim> {
+    return turn.half * arm - 0.5 * (arm + turn.whole * arm);
+  });
 }
 
 template <int dim>
 Point<dim> BodyTurn<dim>::change_to_end(int node) const {
-  const Turn* turn = turn_at(node);
-  if (!turn)
-    return Point<dim>::Zero();
-  const Point<dim>& arm = arms_[node];
-  const Point<dim> at_end = turn->whole * arm;
-  return rotate<dim>(turn->rate, at_end) - (at_end - arm) / dt_;
+  return if_turning(node, [this](const Turn& turn, const Point<dim>& arm) -> Point<dim> {
+    const Point<dim> at_end = turn.whole * arm;
+    return rotate<dim>(turn.rate, at_end) - (at_end - arm) / dt_;
+  });
 }
 
 template class BodyTurn<2>;

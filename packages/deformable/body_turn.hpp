@@ -32,6 +32,8 @@ class BodyTurn {
   /// True on all ranks or on none.
   bool any() const { return !turns_.empty(); }
   double dt() const { return dt_; }
+  /// The same on all ranks.
+  bool is_turning(int body) const { return any() && turns_[body].is_turning; }
 
   // All that follows is of a local node, and zero where its body does not turn.
 
@@ -54,6 +56,9 @@ class BodyTurn {
   };
   void set_rate(const AngularVector<dim>& rate, Turn& turn) const;
   const Turn* turn_at(int node) const;
+  /// f(turn, arm) of a node, zero where its body does not turn.
+  template <typename Function>
+  Point<dim> if_turning(int node, const Function& f) const;
 
   const BodyNodes<dim>& nodes_;
   const std::vector<SolidState<dim>>& states_;

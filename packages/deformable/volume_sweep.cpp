@@ -117,7 +117,7 @@ std::vector<char> VolumeSweep<dim>::can_sweep(const Box<dim>& domain) const {
   const Box<dim> reach(domain.min() - margin, domain.max() + margin);
   std::vector<char> can(solids.size());
   for (std::size_t b = 0; b < can.size(); ++b) {
-    can[b] = attached[b] == 0 && !has_free_boundary[b];
+    can[b] = attached[b] == 0 && !has_free_boundary[b] && !turn_.is_turning(static_cast<int>(b));
     for (int v = solids[b].vertex_begin; v < solids[b].vertex_end; ++v)
       can[b] = can[b] && reach.contains(mesh.vertices[v]);
   }
@@ -185,10 +185,7 @@ void VolumeSweep<dim>::sweep(double dt, const std::vector<double>& volumes,
   const auto& solids = surface_.solids();
   const Nodes own_direction = swelling();
   Nodes own_velocity = nodes_.space.owned(velocity);
-  Nodes on_the_way = own_velocity;
-  for (int i = 0; i < nodes_.n_owned(); ++i)
-    on_the_way[i] += turn_.drift(i);
-  const std::vector<Nodes> at_surface = surface_.gather({&own_direction, &on_the_way});
+  const std::vector<Nodes> at_surface = surface_.gather({&own_direction, &own_velocity});
   const Nodes &direction = at_surface[0], &surface_velocity = at_surface[1];
   std::vector<double> speed(solids.size(), 0);  // along the direction, of each solid
   for (std::size_t b = 0; b < solids.size(); ++b) {

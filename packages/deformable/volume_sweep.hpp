@@ -7,7 +7,8 @@
 
 namespace lockstep {
 
-/// Volumes that the surfaces of deformable bodies sweep in S1.
+/// Volumes that the surfaces of deformable bodies sweep in S1. Bodies that turn along arcs are left
+/// out: straight steps add nothing to them.
 template <int dim>
 class VolumeSweep : public VolumeSweeper<dim> {
  public:

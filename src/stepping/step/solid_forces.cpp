@@ -11,12 +11,16 @@ namespace lockstep {
 namespace {
 /// The part of each solid's motion that a step resolves, for solids with implicit inner forces: 1
 /// where the step is short for them, V.K V dt^2 small beside V.M V, and 0 where it is long. In the
-/// solid's own frame: a translation is no motion that forces would have to resolve.
+/// solid's own frame: neither a translation nor the rotation about which forces are linearised is a
+/// motion that forces would have to resolve.
 template <int dim>
 std::vector<double> resolved_parts(const SolidSystem<dim>& solids,
                                    const NonlinearBodies<dim>& bodies,
                                    const RCP<const CrsMatrix>& added_mass, double dt) {
-  const RCP<const Vector> velocity = bodies.without_translations(*solids.velocity());
+  Vector strained(*solids.velocity(), Teuchos::Copy);
+  if (const RCP<const Vector> turning = linearisation(solids); !turning.is_null())
+    strained.update(-1, *turning, 1);
+  const RCP<const Vector> velocity = bodies.without_translations(strained);
   const std::vector<double> given = bodies.dot(*velocity, *implicit_impulse(solids, dt, *velocity));
   Vector product(solids.map());
   apply(*solids.full_block(added_mass, dt), *velocity, product);
