@@ -32,7 +32,7 @@ class BodyTurn {
   /// True on all ranks or on none.
   bool any() const { return !turns_.empty(); }
   double dt() const { return dt_; }
-  /// The same on all ranks.
+  /// True if this body turns; the same on all ranks.
   bool is_turning(int body) const { return any() && turns_[body].is_turning; }
 
   // All that follows is of a local node, and zero where its body does not turn.
