@@ -3,7 +3,7 @@
 #include "articulated/register_articulated.hpp"
 #include "contact/register_contact.hpp"
 #include "cutcell/register_flux.hpp"
-#include "deformable/register_deformable.hpp"
+#include "deformable/reading/register_deformable.hpp"
 #include "lines/register_lines.hpp"
 #include "liquid/register_interfaces.hpp"
 #include "mac/register_mac.hpp"

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "conformance/solid_conformance.hpp"
-#include "deformable/deformable_parameters.hpp"
 #include "deformable/deformable_solids.hpp"
+#include "deformable/reading/deformable_parameters.hpp"
 #include "rigid/rigid_bodies.hpp"
 #include "rigid/rigid_parameters.hpp"
 #include "support/scene_text.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "deformable/register_deformable.hpp"
+#include "deformable/reading/register_deformable.hpp"
 #include "output/checkpoint.hpp"
 #include "support.hpp"
 #include "support/dense.hpp"

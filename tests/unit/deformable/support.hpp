@@ -8,8 +8,8 @@
 
 #include "base/errors.hpp"
 #include "coupling/solid_system.hpp"
-#include "deformable/deformable_parameters.hpp"
 #include "deformable/deformable_solids.hpp"
+#include "deformable/reading/deformable_parameters.hpp"
 #include "support/scene_text.hpp"
 
 namespace lockstep::test {

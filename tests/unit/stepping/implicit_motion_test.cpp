@@ -3,8 +3,8 @@
 
 #include <Tpetra_Vector.hpp>
 
-#include "deformable/deformable_parameters.hpp"
 #include "deformable/deformable_solids.hpp"
+#include "deformable/reading/deformable_parameters.hpp"
 #include "stepping/step/implicit_motion.hpp"
 #include "support/scene_text.hpp"
 

@@ -1,12 +1,12 @@
-#include "deformable/body_start.hpp"
+#include "deformable/reading/body_start.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
 
 #include "base/errors.hpp"
 #include "deformable/elements/shell_elements.hpp"
-#include "deformable/node_region.hpp"
-#include "deformable/pinned_regions.hpp"
+#include "deformable/reading/node_region.hpp"
+#include "deformable/reading/pinned_regions.hpp"
 #include "motion/list_values.hpp"
 
 namespace lockstep {

@@ -1,4 +1,4 @@
-#include "deformable/node_region.hpp"
+#include "deformable/reading/node_region.hpp"
 
 #include <algorithm>
 

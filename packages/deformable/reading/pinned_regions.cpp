@@ -1,9 +1,9 @@
-#include "deformable/pinned_regions.hpp"
+#include "deformable/reading/pinned_regions.hpp"
 
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "deformable/node_region.hpp"
+#include "deformable/reading/node_region.hpp"
 #include "motion/list_values.hpp"
 
 namespace lockstep {

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "deformable/body_start.hpp"
-#include "deformable/deformable_parameters.hpp"
 #include "deformable/elements/shell_elements.hpp"
 #include "deformable/mesh/mesh_file.hpp"
+#include "deformable/reading/body_start.hpp"
+#include "deformable/reading/deformable_parameters.hpp"
 #include "geometry/generators.hpp"
 #include "geometry/mesh_repair.hpp"
 #include "geometry/surface_check.hpp"

@@ -1,7 +1,7 @@
-#include "deformable/register_deformable.hpp"
+#include "deformable/reading/register_deformable.hpp"
 
-#include "deformable/deformable_parameters.hpp"
 #include "deformable/deformable_solids.hpp"
+#include "deformable/reading/deformable_parameters.hpp"
 
 namespace lockstep {
 

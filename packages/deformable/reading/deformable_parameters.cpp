@@ -1,9 +1,9 @@
-#include "deformable/deformable_parameters.hpp"
+#include "deformable/reading/deformable_parameters.hpp"
 
 #include "base/errors.hpp"
-#include "deformable/body_mesh.hpp"
-#include "deformable/body_start.hpp"
 #include "deformable/elements/volume_elements.hpp"
+#include "deformable/reading/body_mesh.hpp"
+#include "deformable/reading/body_start.hpp"
 #include "geometry/surface_check.hpp"
 
 namespace lockstep {

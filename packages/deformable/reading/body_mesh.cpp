@@ -1,4 +1,4 @@
-#include "deformable/body_mesh.hpp"
+#include "deformable/reading/body_mesh.hpp"
 
 #include <fmt/format.h>
 
