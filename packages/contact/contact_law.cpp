@@ -78,6 +78,11 @@ bool ContactLaw<dim>::any_bends(int solid, int other) const {
 }
 
 template <int dim>
+bool ContactLaw<dim>::is_cloth(int solid) const {
+  return solid >= 0 && !shapes_.solids()[solid].rigid && !shapes_.solids()[solid].closed;
+}
+
+template <int dim>
 double ContactLaw<dim>::clearance_between(int solid, int other) const {
   return clearance * (half_thickness_[solid] + half_thickness_[other]);
 }
@@ -110,6 +115,17 @@ Point<dim> ContactLaw<dim>::turned_place(const SolidMotion<dim>& motion, int sol
   return motion.end_of_point(solid, x, duration) - duration * of_center;
 }
 
+/// A node that comes down along its arc to a gap of zero has 2 sqrt(gap * opening) to go along its
+/// chord if it is lowest within the step, gap + opening if at its end.
+template <int dim>
+double ContactLaw<dim>::bend_of_drift(const Contact<dim>& contact) const {
+  Point<dim> drift = shapes_.drift(contact.point, contact.x);
+  if (contact.other >= 0)
+    drift -= shapes_.drift(contact.other_point, contact.x);
+  const double opening = dt_ * contact.normal.dot(drift), gap = std::max(contact.gap, 0.0);
+  return gap < opening ? 2 * std::sqrt(gap * opening) - gap : opening;
+}
+
 template <int dim>
 void ContactLaw<dim>::follow_turns(const SolidMotion<dim>& motion, Contact<dim>& contact) const {
   if (contact.impact)
@@ -117,6 +133,7 @@ void ContactLaw<dim>::follow_turns(const SolidMotion<dim>& motion, Contact<dim>&
   const Point<dim> x = contact.x, normal = contact.normal;
   const Point<dim> with_solid = turned_place(motion, contact.solid, x, normal);
   const Point<dim> with_other = turned_place(motion, contact.other, x, -normal);
+  contact.bend = bend_of_drift(contact);
   if (with_solid == x && with_other == x)
     return;
   // One place for both, or angular momentum would not be kept.
@@ -129,8 +146,8 @@ void ContactLaw<dim>::follow_turns(const SolidMotion<dim>& motion, Contact<dim>&
       return Point<dim>(Point<dim>::Zero());
     return Point<dim>(motion.at(solid, {}, contact.x) - motion.at(solid, {}, motion.center(solid)));
   };
-  contact.bend = normal.dot(with_solid - with_other) -
-                 dt_ * normal.dot(turn(contact.solid) - turn(contact.other));
+  contact.bend += normal.dot(with_solid - with_other) -
+                  dt_ * normal.dot(turn(contact.solid) - turn(contact.other));
 }
 
 template <int dim>
@@ -146,12 +163,12 @@ double ContactLaw<dim>::target(const Contact<dim>& contact, const SolidMotion<di
     return excess <= 0 ? free : std::min(push_out_rate * excess, 0.25 * spacing_) / dt_;
   }
   // Forces of this step alone, as those on a resting body, do not bounce. What arrives exactly at
-  // the end of the step does so in the next, whatever the round-off. A rigid body that does not
-  // bounce at all goes on until it touches; a skin stops at once.
+  // the end of the step does so in the next, whatever the round-off. Bodies that do not bounce at
+  // all go on until they touch; cloth stops at once.
   const double closing = std::min(-normal_velocity, -before);
   const double restitution =
       mean(contact, &SolidDescription::restitution, options_.wall_restitution);
-  const bool goes_on = restitution == 0 && !any_bends(contact.solid, contact.other);
+  const bool goes_on = restitution == 0 && !is_cloth(contact.solid) && !is_cloth(contact.other);
   if (goes_on || -before <= least_bounce)
     return free;
   if (bouncing && bouncing->count(bounce_key(contact)) > 0)

@@ -34,7 +34,7 @@ class ContactLaw {
   /// Lets the impulse act where turning takes the place in contact, and finds its `bend`: the gap
   /// there as a linear function of the velocities near `motion`, that of the beginning of the step,
   /// since what nothing holds yet may turn in any way. Along its chord a wheel would land on a
-  /// point ahead of it, which brakes it.
+  /// point ahead of it, which brakes it. Of what is not rigid the bend is that of its drift.
   void follow_turns(const SolidMotion<dim>& motion, Contact<dim>& contact) const;
   /// Gap that surfaces of solids which are not both rigid keep between them [m].
   double clearance_between(int solid, int other) const;
@@ -50,6 +50,10 @@ class ContactLaw {
   /// within the step: the end of its arc, or the lowest point on the way. Other solids do not turn.
   Point<dim> turned_place(const SolidMotion<dim>& motion, int solid, const Point<dim>& x,
                           const Point<dim>& normal) const;
+  /// True of a shell that bends; a wall is not.
+  bool is_cloth(int solid) const;
+  /// Returns how much the gap opens by the drift of both sides [m].
+  double bend_of_drift(const Contact<dim>& contact) const;
   /// Geometric mean of a property of both sides.
   double mean(const Contact<dim>& contact, double SolidDescription::*property,
               const std::optional<double>& of_walls) const;

@@ -131,6 +131,8 @@ typename GaussSeidelContact<dim>::Outcome GaussSeidelContact<dim>::act(
   ContactShapes<dim> shapes(solids, topology_);
   if (solids.joints())
     shapes.set_constraint_error(replicated(solids, *constraint_error_of(solids, velocity)));
+  if (const RCP<const Vector> drift = solids.drift(); !drift.is_null())
+    shapes.set_drift(replicated(solids, *drift));
   const auto bends = [](const SolidDescription& solid) {
     return !solid.rigid && !solid.prescribed;
   };

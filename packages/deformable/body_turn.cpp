@@ -102,6 +102,13 @@ Point<dim> BodyTurn<dim>::drift(int node) const {
 }
 
 template <int dim>
+Point<dim> BodyTurn<dim>::next_drift(int node) const {
+  const Point<dim> now = drift(node);
+  return if_turning(
+      node, [&](const Turn& turn, const Point<dim>&) -> Point<dim> { return turn.whole * now; });
+}
+
+template <int dim>
 Point<dim> BodyTurn<dim>::rise_of_arc(int node) const {
   return if_turning(node, [](const Turn& turn, const Point<dim>& arm) -> Point<dim> {
     return turn.half * arm - 0.5 * (arm + turn.whole * arm);

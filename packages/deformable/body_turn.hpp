@@ -41,6 +41,8 @@ class BodyTurn {
   Point<dim> rigid_velocity(int node) const;
   /// Way of the rotation beside dt omega x r, over dt: x^{n+1} = x^n + dt (V + drift) [m/s].
   Point<dim> drift(int node) const;
+  /// Drift of another step, after this one [m/s].
+  Point<dim> next_drift(int node) const;
   /// Way from the middle of the chord to that of the arc [m].
   Point<dim> rise_of_arc(int node) const;
   /// Velocity of the rotation at the end of the step less its mean [m/s].

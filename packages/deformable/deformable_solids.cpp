@@ -195,6 +195,16 @@ void DeformableSolids<dim>::move(const Vector& velocity, double, double dt) {
 }
 
 template <int dim>
+RCP<const Vector> DeformableSolids<dim>::drift() const {
+  if (!turn_.any())
+    return Teuchos::null;
+  Nodes drift;
+  for (int i = 0; i < nodes_.n_owned(); ++i)
+    drift.push_back(implicit_.has_moved() ? turn_.next_drift(i) : turn_.drift(i));
+  return nodes_.space.vector(drift);
+}
+
+template <int dim>
 void DeformableSolids<dim>::update() {
   implicit_.update();
   explicit_.update_largest_stable_step();

@@ -64,6 +64,7 @@ class DeformableSolids : public SolidModel<dim>,
   void set_velocity(const Vector& velocity) override;
   void limit_motion(double dt, Vector& velocity) override;
   void move(const Vector& velocity, double time, double dt) override;
+  RCP<const Vector> drift() const override;
   std::vector<SolidState<dim>> states() const override { return states_; }
   StepBound largest_stable_step() const override { return explicit_.largest_stable_step(); }
 

@@ -314,6 +314,20 @@ void SolidSystem<dim>::move(const Vector& velocity, double time, double dt) {
   ++linearisation_number_;
 }
 
+template <int dim>
+RCP<const Vector> SolidSystem<dim>::drift() const {
+  RCP<Vector> stacked;
+  for (int m = 0; m < n_models(); ++m) {
+    const RCP<const Vector> of_model = model(m).drift();
+    if (of_model.is_null())
+      continue;
+    if (stacked.is_null())
+      stacked = make_vector(map_);
+    part(*stacked, m)->update(1, *of_model, 0);
+  }
+  return stacked;
+}
+
 /// Attached nodes go where their solids have carried them, round the arc of a rotation.
 template <int dim>
 void SolidSystem<dim>::move_attached(const Vector& velocity, double time, double dt) {

@@ -127,6 +127,8 @@ class SolidSystem {
   NonlinearSolids<dim>* nonlinear(int m) const { return models_[m]->nonlinear(); }
   void limit_motion(double dt, Vector& velocity);
   void move(const Vector& velocity, double time, double dt);
+  /// Stacked `SolidModel::drift`; null: nothing drifts.
+  RCP<const Vector> drift() const;
   /// Linear and angular momentum of each solid, and of all, for a stacked generalized momentum.
   /// Collective.
   std::vector<Momentum<dim>> momentum_of_each(const Vector& generalized_momentum) const;

@@ -131,9 +131,13 @@ class SolidModel : public PlugIn {
   /// (limits of strain), which the model also adds to the `explicit_momentum` of S2. Default:
   /// nothing. Collective.
   virtual void limit_motion(double, Vector&) {}
-  /// x := x + dt * velocity from the stored positions (S1), and prescribed solids to time + dt.
-  /// Collective.
+  /// x := x + dt (velocity + drift) from the stored positions (S1), and prescribed solids to time
+  /// + dt. Collective.
   virtual void move(const Vector& velocity, double time, double dt) = 0;
+  /// Returns what nodes go beside their velocities in the coming `move`, over its dt [m/s], and
+  /// after it in another one: the rest of an arc, of bodies that turn along. Contact counts with
+  /// it. Null: nothing, the default; on all ranks or on none. Local.
+  virtual RCP<const Vector> drift() const { return Teuchos::null; }
   /// Returns the position to which the last `move` carried the point x^n = x of a rigid solid (its
   /// number in this model); nodes attached to the solid ask for it. Default, for models without
   /// rigid solids: x. Local.

@@ -41,6 +41,15 @@ std::vector<SurfaceEdge> find_edges(const SurfaceMesh<3>& mesh, const SolidDescr
   return all;
 }
 
+/// Returns the velocity of a row for these velocities of dofs, by id; zero if there are none.
+template <int dim>
+Point<dim> sum_of(const std::vector<double>& of_dofs, const VelocityRow<dim>& row) {
+  Point<dim> sum = Point<dim>::Zero();
+  for (std::size_t k = 0; k < row.dofs.size() && !of_dofs.empty(); ++k)
+    sum += of_dofs[row.dofs[k]] * row.coefficients[k];
+  return sum;
+}
+
 bool is_sharp(const SurfaceMesh<3>& mesh, const SurfaceEdge& edge) {
   if (edge.simplices[1] < 0)
     return true;
@@ -221,11 +230,9 @@ Point<dim> ContactShapes<dim>::rigid_velocity(int solid, const Point<dim>& x,
                                               const std::vector<double>& velocity) const {
   VelocityRow<dim> row;
   system_.rigid_row(source(solid), x, row);
-  Point<dim> sum = constraint_error_of(row);
+  const Point<dim> error = sum_of<dim>(constraint_error_, row);
   resolve(row);
-  for (std::size_t k = 0; k < row.dofs.size(); ++k)
-    sum += velocity[row.dofs[k]] * row.coefficients[k];
-  return sum;
+  return error + sum_of<dim>(velocity, row);
 }
 
 template <int dim>
@@ -288,21 +295,14 @@ std::vector<GlobalIndex> ContactShapes<dim>::leading_dofs() const {
 }
 
 template <int dim>
-Point<dim> ContactShapes<dim>::constraint_error(const SurfacePoint<dim>& point,
-                                                const Point<dim>& x) const {
-  if (constraint_error_.empty())
+Point<dim> ContactShapes<dim>::velocity_by(const std::vector<double>& of_dofs,
+                                           const SurfacePoint<dim>& point,
+                                           const Point<dim>& x) const {
+  if (of_dofs.empty())
     return Point<dim>::Zero();
   VelocityRow<dim> row;
   system_.velocity_row(known_to_system(point), x, row);
-  return constraint_error_of(row);
-}
-
-template <int dim>
-Point<dim> ContactShapes<dim>::constraint_error_of(const VelocityRow<dim>& row) const {
-  Point<dim> sum = Point<dim>::Zero();
-  for (std::size_t k = 0; k < row.dofs.size() && !constraint_error_.empty(); ++k)
-    sum += constraint_error_[row.dofs[k]] * row.coefficients[k];
-  return sum;
+  return sum_of<dim>(of_dofs, row);
 }
 
 template <int dim>

@@ -113,7 +113,16 @@ class ContactShapes {
     constraint_error_ = std::move(constraint_error);
   }
   /// Returns the part of a point's velocity that is due to `set_constraint_error`.
-  Point<dim> constraint_error(const SurfacePoint<dim>& point, const Point<dim>& x) const;
+  Point<dim> constraint_error(const SurfacePoint<dim>& point, const Point<dim>& x) const {
+    return velocity_by(constraint_error_, point, x);
+  }
+  /// Sets what dofs go beside their velocities (`SolidSystem::drift`), by id.
+  void set_drift(std::vector<double> drift) { drift_ = std::move(drift); }
+  bool has_drift() const { return !drift_.empty(); }
+  /// Returns the drift of a point [m/s].
+  Point<dim> drift(const SurfacePoint<dim>& point, const Point<dim>& x) const {
+    return velocity_by(drift_, point, x);
+  }
   Point<dim> prescribed_velocity(const SurfacePoint<dim>& point, const Point<dim>& x) const {
     return system_.prescribed_velocity(known_to_system(point), x);
   }
@@ -142,7 +151,9 @@ class ContactShapes {
   void find_combinations();
   void find_carriers();
   void resolve(VelocityRow<dim>& row) const;
-  Point<dim> constraint_error_of(const VelocityRow<dim>& row) const;
+  /// Velocity of a point by these velocities of dofs; zero if there are none.
+  Point<dim> velocity_by(const std::vector<double>& of_dofs, const SurfacePoint<dim>& point,
+                         const Point<dim>& x) const;
   void find_held();
 
   const SolidSystem<dim>& system_;
@@ -152,8 +163,8 @@ class ContactShapes {
   std::vector<SolidDescription> with_images_;  ///< empty without images
   std::vector<Box<dim>> bounds_, solid_bounds_;
   std::unordered_map<GlobalIndex, std::vector<std::pair<GlobalIndex, double>>> combinations_;
-  std::vector<double> constraint_error_;  ///< empty: none
-  std::vector<int> carriers_;             ///< carrier of each vertex; empty: no node is attached
+  std::vector<double> constraint_error_, drift_;  ///< empty: none
+  std::vector<int> carriers_;  ///< carrier of each vertex; empty: no node is attached
   std::vector<bool> held_;
 };
 

@@ -144,7 +144,13 @@ template <int dim>
 Point<dim> SolidMotion<dim>::end_of_vertex(int solid, int vertex, double dt) const {
   const Point<dim>& x = shapes_.mesh().vertices[vertex];
   const int rigid = motions_[solid].rigid ? solid : shapes_.carrier(vertex);
-  return rigid >= 0 ? end_of_point(rigid, x, dt) : Point<dim>(x + dt * vertex_velocities_[vertex]);
+  if (rigid >= 0)
+    return end_of_point(rigid, x, dt);
+  const Point<dim> end = x + dt * vertex_velocities_[vertex];
+  if (!shapes_.has_drift())
+    return end;
+  const SurfacePoint<dim> point = shapes_.at_vertex(vertex);
+  return point.simplex < 0 ? end : Point<dim>(end + dt * shapes_.drift(point, x));
 }
 
 template class SolidMotion<2>;

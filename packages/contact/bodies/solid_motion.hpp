@@ -20,9 +20,9 @@ class SolidMotion {
   Point<dim> at(int solid, const SurfacePoint<dim>& point, const Point<dim>& x) const;
   /// Velocity of a vertex [m/s].
   Point<dim> of_vertex(int solid, int vertex) const;
-  /// Position of a vertex, or of a point fixed to a rigid solid, after dt [m]: straight on, but on
-  /// a rigid solid, or carried by one, with its turn about its reference point if it has one, else
-  /// about its centre of mass.
+  /// Position of a vertex, or of a point fixed to a rigid solid, after dt [m]: straight on and with
+  /// its drift, but on a rigid solid, or carried by one, with its turn about its reference point if
+  /// it has one, else about its centre of mass.
   Point<dim> end_of_vertex(int solid, int vertex, double dt) const;
   Point<dim> end_of_point(int rigid_solid, const Point<dim>& x, double dt) const;
   /// Centre about which a rigid solid turns [m], and its angular velocity [rad/s].

@@ -248,6 +248,34 @@ std::pair<double, double> lost_by_turning(const std::string& modulus, double tur
   return {1 - end.kinetic_energy / start.kinetic_energy, 1 - end.volume / start.volume};
 }
 
+TEST(TimeIntegration, DriftIsTheRestOfTheArc) {
+  constexpr double turn = 0.1;
+  const auto solids =
+      model<2>({geometry("ball", number("Radius", "1") + number("Mesh Spacing", "0.4")) +
+                material("neo-hookean", "1e7") + number("Density", "1") +
+                number("Angular Velocity", "1") + text("Time Integration", "second-order")});
+  EXPECT_TRUE(solids->drift().is_null());  // no step has begun
+  solids->begin_step(0, turn);
+  const std::vector<Point<2>> start = solids->positions();
+  const RCP<const Vector> drift = solids->drift(), velocity = solids->velocity();
+  ASSERT_FALSE(drift.is_null());
+  solids->move(*velocity, 0, turn);
+  const RCP<const Vector> next = solids->drift();
+  const auto of_node = [](const RCP<const Vector>& values, std::size_t node) {
+    const auto data = values->getData();
+    return Point<2>(data[2 * node], data[2 * node + 1]);
+  };
+  const Eigen::Rotation2Dd rotation(turn);
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const Point<2> way = turn * (of_node(velocity, i) + of_node(drift, i));
+    EXPECT_LE((solids->positions()[i] - start[i] - way).norm(), 1e-14);
+    EXPECT_LE((solids->positions()[i] - rotation * start[i]).norm(), 1e-12);
+    EXPECT_LE((of_node(next, i) - rotation * of_node(drift, i)).norm(), 1e-12);
+  }
+  solids->set_velocity(*velocity);
+  EXPECT_TRUE(solids->drift().is_null());
+}
+
 // Straight steps would make it grow by half the square of the turn, and its elastic forces would
 // take that back from the velocities: half of the energy in a radian.
 TEST(TimeIntegration, FreeBodiesOfSecondOrderTurnAlong) {
