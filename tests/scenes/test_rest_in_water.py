@@ -114,7 +114,7 @@ class RestInWater(unittest.TestCase):
         bodies, history = self.run_scene(text, steps)
         settled = [row for row in bodies if int(row["step"]) > steps // 4]
         self.assertLess(max(abs(v) for name in ("vx", "vy") for v in column(settled, name)), 1e-6 * G**.5)
-        self.assertLess(max(column(history, "fluid_kinetic_energy")), 1e-6)
+        self.assertLess(max(column(history[steps // 4:], "fluid_kinetic_energy")), 1e-6)
         self.assertLess(max(column(history, "momentum_error")), 1e-13)
 
     def test_links_lie_on_the_floor(self):
@@ -174,10 +174,11 @@ class RestInWater(unittest.TestCase):
                 self.assert_still(text)
 
     def test_a_stone_lies_on_a_cushion_in_a_full_tank(self):
-        """Closed fluid locks what is soft. There contact acted before and after the coupled solve: the stone went up and down at 15 mm/s for ever."""
+        """Closed fluid locks what is soft. There contact acted before and after the coupled solve: the stone went up and down at 15 mm/s for ever.
+        Forces of first order damp what a drop from rest stirs, which of second order goes on at .4 mm/s after 2 s."""
         cushion = {"Type": "deformable body", "Geometry": {"Shape": "box", "Size": (.5, .2), "Mesh Spacing": .04}, "Position": (.5, .1),
                    "Material": {"Type": "corotated", "Young's Modulus": 1e5, "Poisson's Ratio": .3}, "Density": 1500., "Viscosity": 100.,
-                   "Friction": .3}
+                   "Friction": .3, "Time Integration": "fully-implicit"}
         solids = {"Cushion": cushion, "Stone": box((.2, .15), (.5, .28), 2500., Friction=.3)}
         for coupling in ("mixed face", "flux"):
             with self.subTest(coupling=coupling):

@@ -126,7 +126,7 @@ Eigen::Matrix<double, dim, dim> start_rotation(const ParameterList& list) {
 }
 
 template <int dim>
-void declare_body_start(ParameterList& list) {
+void declare_body_start(ParameterList& list, const std::string& integration) {
   declare_choice(list, "Mass", "lumped", {"lumped", "consistent"},
                  "lumped: a share of each element on its corners. consistent: the mass matrix of "
                  "the finite elements.");
@@ -134,7 +134,7 @@ void declare_body_start(ParameterList& list) {
                    "Rayleigh's factor of the stiffness at rest [s]: a mode of angular frequency w "
                    "has w/2 times this of critical damping.");
   declare_choice(
-      list, "Time Integration", "fully-implicit",
+      list, "Time Integration", integration,
       {"explicit", "semi-implicit", "fully-implicit", "second-order"},
       "explicit: all forces at the present state. semi-implicit: elastic forces at the "
       "present positions, implicit damping. fully-implicit: both linearised and solved "
@@ -184,8 +184,8 @@ void read_body_start(const ParameterList& list, const std::vector<Point<dim>>& r
 
 template Eigen::Matrix2d start_rotation<2>(const ParameterList&);
 template Eigen::Matrix3d start_rotation<3>(const ParameterList&);
-template void declare_body_start<2>(ParameterList&);
-template void declare_body_start<3>(ParameterList&);
+template void declare_body_start<2>(ParameterList&, const std::string&);
+template void declare_body_start<3>(ParameterList&, const std::string&);
 template void read_body_start<2>(const ParameterList&, const std::vector<Point<2>>&,
                                  DeformableBody<2>&);
 template void read_body_start<3>(const ParameterList&, const std::vector<Point<3>>&,

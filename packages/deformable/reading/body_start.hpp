@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <vector>
 
 #include "deformable/deformable_body.hpp"
@@ -7,9 +8,10 @@
 namespace lockstep {
 
 /// Declares the parameters that volumes and shells share: mass matrix, damping, time integration,
-/// place and velocity at the start, constraints, loads, contact.
+/// place and velocity at the start, constraints, loads, contact. `integration`: the default of
+/// "Time Integration".
 template <int dim>
-void declare_body_start(ParameterList& list);
+void declare_body_start(ParameterList& list, const std::string& integration);
 
 /// Reads the parameters for nodes at these rest positions; name, mass elements and their masses are
 /// set before.

@@ -172,7 +172,7 @@ ParameterList cloth_parameters() {
       list, "Stretch Limit", 0.0, 0.0,
       "Most that an edge may be longer than at rest [1]: impulses along the edges keep "
       "the step from stretching it further, which takes a \"Surface Density\". 0: no limit.");
-  declare_body_start<dim>(list);
+  declare_body_start<dim>(list, "fully-implicit");
   return list;
 }
 

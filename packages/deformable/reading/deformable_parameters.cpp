@@ -51,7 +51,7 @@ ParameterList deformable_body_parameters(const MaterialRegistry<dim>& materials)
   declare_required_positive(list, "Density", "Density at rest [kg/m^3] (2D: [kg/m^2]).");
   declare_at_least(list, "Viscosity", 0.0, 0.0,
                    "Viscosity of the material: shear stress over twice the strain rate [Pa s].");
-  declare_body_start<dim>(list);
+  declare_body_start<dim>(list, "second-order");
   return list;
 }
 
