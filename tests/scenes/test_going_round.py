@@ -67,10 +67,10 @@ class GoingRound(unittest.TestCase):
                     self.assert_same(middle, self.states(2, coupling, x, ranks=ranks), 1e-6)
 
     def test_no_place_is_another_for_what_is_soft(self):
-        """In space a ball of few elements moves aside by 1e-7 m/s a cell farther on, seam or not."""
+        """In space a ball of few elements moves aside by 3e-7 m/s a cell farther on, seam or not."""
         for coupling in COUPLINGS:
             for dim, steps, tolerance, places in ((2, 12, 1e-6, ((1., .5, 1), (.03125, .5, 1), (-1., .5, 1), (4.5, .5, 2), (1., .5, 2))),
-                                                  (3, 3, 3e-4, ((1., 0., 2),))):
+                                                  (3, 3, 5e-4, ((1., 0., 2),))):
                 middle = self.states(dim, coupling, .5, steps=steps, made=soft_ball)
                 for x, z, ranks in places:
                     with self.subTest(coupling=coupling, dim=dim, x=x, ranks=ranks):
