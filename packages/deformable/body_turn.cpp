@@ -103,9 +103,13 @@ Point<dim> BodyTurn<dim>::drift(int node) const {
 
 template <int dim>
 Point<dim> BodyTurn<dim>::next_drift(int node) const {
+  constexpr double longest_arc = 0.5;  // [rad]
   const Point<dim> now = drift(node);
-  return if_turning(
-      node, [&](const Turn& turn, const Point<dim>&) -> Point<dim> { return turn.whole * now; });
+  return if_turning(node, [this, &now](const Turn& turn, const Point<dim>&) -> Point<dim> {
+    if (turn.rate.norm() * dt_ > longest_arc)
+      return Point<dim>::Zero();
+    return turn.whole * now;
+  });
 }
 
 template <int dim>

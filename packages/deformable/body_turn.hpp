@@ -41,7 +41,8 @@ class BodyTurn {
   Point<dim> rigid_velocity(int node) const;
   /// Way of the rotation beside dt omega x r, over dt: x^{n+1} = x^n + dt (V + drift) [m/s].
   Point<dim> drift(int node) const;
-  /// Drift of another step, after this one [m/s].
+  /// Drift of another step, after this one [m/s]; zero of bodies that turn by more than half a
+  /// radian in a step, which nothing foresees.
   Point<dim> next_drift(int node) const;
   /// Way from the middle of the chord to that of the arc [m].
   Point<dim> rise_of_arc(int node) const;

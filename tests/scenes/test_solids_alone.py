@@ -58,9 +58,9 @@ class SolidsAlone(unittest.TestCase):
             self.assertAlmostEqual(-.1 * float(end["wz"]), float(end["vx"]), delta=.01)
 
     def test_a_soft_disc_rolls_on(self):
-        """Ten radians at 0.05 rad a step: .82 of 1 m/s are left. Nodes ahead that were stopped before they touched, and along
-        their chords, left .63."""
-        disc = {"Type": "deformable body", "Geometry": {"Shape": "ball", "Radius": .1, "Mesh Spacing": .01}, "Density": 1000.,
+        """Ten radians at 0.05 rad a step: .87 of 1 m/s are left. Contact that foresees chords leaves .81, and .59 if it stops nodes
+        before they touch."""
+        disc = {"Type": "deformable body", "Geometry": {"Shape": "ball", "Radius": .1, "Mesh Spacing": .005}, "Density": 1000.,
                 "Material": {"Type": "neo-hookean", "Young's Modulus": 1e6, "Poisson's Ratio": .3}, "Friction": .3,
                 "Position": (.3, .101), "Velocity": (1., 0.), "Angular Velocity": -10.}
         text = xml("Scene", {
@@ -70,7 +70,7 @@ class SolidsAlone(unittest.TestCase):
             "Time": {"End": 1., "Fixed Step": .005}, "Output": {"Frames": False}})
         output = self.run_scene(text)
         rows, history = table(output / "bodies.csv"), table(output / "history.csv")
-        self.assertGreater(column(rows, "vx")[-1], .78)
+        self.assertGreater(column(rows, "vx")[-1], .84)
         self.assertAlmostEqual(-.1 * column(rows, "wz")[-1], column(rows, "vx")[-1], delta=.03)
         energies = [sum(parts) for parts in zip(*(column(history, name) for name in ("solid_kinetic_energy", "elastic_energy")))]
         self.assertLess(max(energies), energies[0] + 31 * 9.8 * .001)  # it lies down by less than a millimetre
